@@ -1,0 +1,2 @@
+"""Fieldline."""
+__version__ = "0.1.0"

@@ -1,0 +1,35 @@
+"""What can go wrong, in words: which input, what came, what was expected, what to try.
+
+Exit codes of the command line follow the class: `InputError` 2, `NoEstimateError` 1.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class FieldlineError(Exception):
+    """Base of every error that Fieldline raises on purpose; its text is written for the user."""
+
+    exit_code = 2
+
+
+class InputError(FieldlineError, ValueError):
+    """The input cannot be used as it is: the message names it and says what to try."""
+
+
+class NoEstimateError(FieldlineError):
+    """The job ran, but the data do not support an estimate."""
+
+    exit_code = 1
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """A clause that names the nearest known word, or lists all of them when none is near."""
+    known = sorted(known)
+    close = difflib.get_close_matches(word.lower(), [k.lower() for k in known], n=1, cutoff=0.55)
+    if close:
+        match = next(k for k in known if k.lower() == close[0])
+        return f'did you mean "{match}"?'
+    return "known: " + ", ".join(known)

@@ -1,0 +1,1 @@
+"""Axes, rotations and time."""
