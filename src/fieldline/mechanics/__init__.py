@@ -1,1 +1,1 @@
-
+"""Motion of rigid bodies: what truth and flight software share."""
