@@ -1,1 +1,6 @@
+"""Orbits: where the satellite was, from elements, ephemerides or positions."""
 
+from fieldline.orbit.orbit import Orbit
+from fieldline.orbit.reading import read_orbit
+
+__all__ = ["Orbit", "read_orbit"]
