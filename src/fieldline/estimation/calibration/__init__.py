@@ -1,0 +1,7 @@
+"""Calibration of a magnetometer without attitude: from the magnitude of its readings against a field model's."""
+
+from fieldline.estimation.calibration.face import Flight, calibrate_flights, calibrate_magnitude
+from fieldline.estimation.calibration.record import Calibration
+from fieldline.estimation.calibration.selection import Candidate
+
+__all__ = ["calibrate_magnitude", "calibrate_flights", "Calibration", "Candidate", "Flight"]
