@@ -69,7 +69,7 @@ def torqued_step(q_bi, omega, dt, inertia, inertia_inv, torque):
 @njit(cache=True)
 def rigid_step(q_bi, omega, dt, inertia, inertia_inv):
     """(q_bi, omega) of a torque-free body after dt, which may be negative."""
-    return torqued_step(q_bi, omega, dt, inertia, inertia_inv, (0.0, 0.0, 0.0))
+    return torqued_step(q_bi, omega, dt, inertia, inertia_inv, NO_TORQUE)
 
 
 @njit(cache=True)
