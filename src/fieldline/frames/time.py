@@ -8,6 +8,8 @@ second after 2017 has not been announced, so elapsed seconds are taken as UTC di
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from fieldline.errors import InputError
@@ -17,16 +19,29 @@ NS = np.timedelta64(1, "ns")
 
 
 def as_utc(time_utc, name: str = "time_utc") -> np.ndarray:
-    """datetime64[ns] array of any datetime64, ISO string or `datetime`; naive values are UTC."""
-    try:
-        times = np.asarray(time_utc, dtype="datetime64[ns]")
-    except (ValueError, TypeError) as error:
-        raise InputError(
-            f"{name} must be UTC as numpy.datetime64 or ISO 8601 text without an offset; got {time_utc!r:.60}."
-        ) from error
+    """datetime64[ns] array of any datetime64, ISO 8601 text or `datetime`; naive values are UTC, offsets are applied."""
+    given = np.asarray(time_utc)
+    if given.dtype.kind != "M":
+        given = _parsed(given, name)
+    times = given.astype("datetime64[ns]", copy=False)
     if np.isnat(times).any():
         raise InputError(f"{name} holds {int(np.isnat(times).sum())} missing times (NaT); drop those samples first.")
+    if given.dtype != times.dtype and (given.astype("datetime64[s]") != times.astype("datetime64[s]")).any():
+        # Nanoseconds in 64 bits end there; NumPy wraps round in silence, and 0001-01-01 would become the year 1754.
+        raise InputError(f"{name} holds times outside the years 1678 to 2261, such as {given.min()}. Missing values?")
     return times
+
+
+def _parsed(given: np.ndarray, name: str) -> np.ndarray:
+    """Text or `datetime` objects as datetime64 of the unit that holds them."""
+    try:
+        if given.dtype.kind in "biufc" and given.size:
+            raise TypeError("plain numbers have no epoch")
+        with warnings.catch_warnings(action="ignore", category=UserWarning):  # NumPy applies an offset, but warns of it
+            return given.astype("datetime64")
+    except (ValueError, TypeError) as error:
+        shown = str(given.flat[0] if given.ndim else given)
+        raise InputError(f"{name} must be UTC as numpy.datetime64 or ISO 8601 text; got {shown!r:.60}.") from error
 
 
 def seconds_since(time_utc: np.ndarray, epoch_utc: np.datetime64) -> np.ndarray:
