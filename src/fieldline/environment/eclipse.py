@@ -5,7 +5,7 @@
                a = asin(R_sun / d),  b = asin(R / r),  c = angle between the centres, all seen by the satellite
 
 (2) takes both discs as flat circles of radius a and b, c apart, which gives penumbra, umbra and (far out) the annular
-eclipse; the limb's true curve differs by at most 0.004 of the disc in low orbit. The Earth is a sphere of equatorial
+eclipse; the limb's true curve differs by at most 0.0014 of the disc. The Earth is a sphere of equatorial
 radius R without atmosphere: the flattening moves the shadow's edge by up to 21 km at the poles (some 3 s of flight),
 and refraction dims the last few seconds.
 
@@ -65,7 +65,7 @@ def _cone(position: np.ndarray, sun: np.ndarray) -> np.ndarray:
     # atan2 of cross and dot: acos would lose the penumbra's width to rounding for centres nearly in line.
     cross = np.linalg.norm(np.cross(to_sun, -position), axis=-1)
     c = np.arctan2(cross, np.sum(-to_sun * position, axis=-1))
-    return 1.0 - _overlap(a, b, c) / (np.pi * a**2)
+    return np.clip(1.0 - _overlap(a, b, c) / (np.pi * a**2), 0.0, 1.0)  # rounding leaves -1e-16
 
 
 def _overlap(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:

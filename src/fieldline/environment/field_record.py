@@ -98,7 +98,7 @@ class FieldModel:
     def at(self, time_utc) -> FieldParams:
         """The model at one time, for compiled loops over a span in which the secular variation does not matter.
 
-        The field changes by up to 0.5 nT a day and 150 nT a year.
+        In low orbit the field changes by up to 0.4 nT a day, 150 nT a year.
         """
         if np.ndim(time_utc) != 0:
             raise InputError(f"FieldModel.at takes one time; got {np.shape(time_utc)}. Use magnetic_field for a series.")
@@ -142,7 +142,7 @@ class FieldModel:
             return asked + 'Use "IGRF-14" (1900 to 2030).'
         if year > last and self.coefficients is not None:
             carried = f'Carry its secular variation on with field_model("{self.name}", until_year={np.ceil(year):g}), '
-            return asked + carried + "which grows wrong by some 20 nT a year."
+            return asked + carried + "and expect some 20 nT more error a year."
         return asked + 'No model here reaches that year but "centred-dipole" and "displaced-dipoles", with moments given.'
 
 

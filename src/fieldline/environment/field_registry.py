@@ -51,12 +51,12 @@ def field_model(
         if given:
             raise InputError(f"{', '.join(given)} cannot be given with a finished FieldModel ({model.name}); give its name.")
         return model.truncated(degree, order)
-    if not given:
+    if not given and isinstance(model, str) and isinstance(degree, int | None) and isinstance(order, int | None):
         return _standard(model, degree, order)
     return _made(model, given).truncated(degree, order)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=32, typed=True)
 def _standard(name: str, degree: int | None, order: int | None) -> FieldModel:
     """A model without further options; kept, since its tables cost milliseconds."""
     return _made(name, {}).truncated(degree, order)
@@ -110,7 +110,7 @@ def _wmm2025(until_year: float | None = None) -> FieldModel:
 
 
 def _dipole(until_year: float | None = None) -> FieldModel:
-    """The first degree of IGRF-14: a tilted, centred dipole that changes with time. It is wrong by 10 to 20 %."""
+    """The first degree of IGRF-14: a tilted, centred dipole that changes with time. Wrong by 24 % RMS at 500 km."""
     model = replace(_igrf14().truncated(1), name="dipole", version="IGRF-14, degree 1")
     return _carried_on(model, until_year)
 
@@ -151,10 +151,10 @@ def _dipoles(name: str, position: np.ndarray, moment: np.ndarray) -> FieldModel:
 
 def _carried_on(model: FieldModel, until_year: float | None) -> FieldModel:
     """The model with its last secular variation carried on to `until_year`."""
-    if until_year is None:
+    if until_year is None or model.coefficients is None:
         return model
     first, last = model.years
-    if not (np.isscalar(until_year) and last <= until_year <= last + 20.0):
+    if not isinstance(until_year, int | float) or not last <= until_year <= last + 20.0:
         raise InputError(f"until_year of {model.name} must lie in {last:g} to {last + 20:g}; got {until_year!r}.")
     if until_year == last:
         return model

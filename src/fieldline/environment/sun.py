@@ -4,7 +4,7 @@
     r(t) = Hermite cubic through positions and velocities at whole days of TT                               (2)
 
 Geometric, axes of the GCRS. Aberration and the light's eight minutes together turn the direction by 0.0057 deg and are
-left out; epv00 itself is good to 0.001 deg over 1900 to 2100, and (2) departs from it by less than 2e-9 rad. Seen from
+left out; epv00 itself is good to 1e-5 deg over 1900 to 2100, and (2) departs from it by less than 1e-9 rad. Seen from
 a low orbit instead of the Earth's centre the Sun stands up to 0.0027 deg elsewhere. Together: good to 0.01 deg.
 
 Source: IAU SOFA, epv00 (after VSOP2000), through erfa; IAU 2012 B2 for the astronomical unit.
