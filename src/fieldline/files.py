@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import hashlib
 import os
 import tempfile
@@ -41,6 +42,30 @@ def write_whole(path: str | Path, write: Callable[[Path], None]) -> Path:
 def write_text_whole(path: str | Path, text: str) -> Path:
     """`write_whole` for text in UTF-8."""
     return write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8"))
+
+
+def read_text(path: str | Path, what: str) -> str:
+    """A small text file, UTF-8 (or UTF-16 with its mark, or Latin-1); InputError names `what` it should have been."""
+    path = Path(path)
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise InputError(f'the {what} "{path}" does not exist. Is the path right?') from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f'the {what} "{path}" cannot be read: {reason}.') from error
+    marks = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
+    encoding = next((name for mark, name in marks.items() if content.startswith(mark)), "utf-8")
+    try:
+        text = content.decode(encoding)
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")
+    if not text.strip():
+        raise InputError(f'the {what} "{path.name}" is empty.')
+    strange = sum((c < " " and c not in "\t\n\r\f\x1a") or "\x7f" <= c <= "\x9f" for c in text[:65536])
+    if strange:
+        raise InputError(f'the {what} "{path.name}" is binary, not text ({strange} control characters at its beginning).')
+    return text
 
 
 def sha256_of(path: str | Path) -> str:

@@ -11,16 +11,21 @@ Source: IERS readme.finals2000A; IERS C04 headers.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from fieldline.errors import InputError
+from fieldline.files import read_text
 from fieldline.frames.time import as_utc, iso_utc
 
 ARCSECOND_RAD = np.pi / 648000.0
 MJD_UNIX_EPOCH = 40587.0
 NS_PER_DAY = 86_400_000_000_000
+FINALS_LINE = re.compile(r"[ \d]\d[ \d]\d[ \d]\d \d{5}\.\d\d ", re.ASCII)  # two digits each of year, month, day; MJD
+C04_LINE = re.compile(r"\s*(19|20)\d\d\s+\d{1,2}\s+\d{1,2}\s+\d+(\.\d*)?\s", re.ASCII)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +59,53 @@ class EarthOrientation:
                 f"run from {iso_utc(times.min(), 0)} to {iso_utc(times.max(), 0)}. Get a newer file, or leave it out (UT1 = UTC)."
             )
         return mjd
+
+
+def read_eop(path: str | Path) -> EarthOrientation:
+    """Earth orientation from a file of the IERS: finals2000A or C04, told apart by content; InputError for others."""
+    text, name = read_text(path, "Earth orientation file"), Path(path).name
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    fixed = [row for row in lines if FINALS_LINE.match(row[1])]
+    free = [row for row in lines if C04_LINE.match(row[1])]
+    parse, rows = (_finals_row, fixed) if len(fixed) > len(free) else (_c04_row, free)
+    table = np.array([values for number, line in rows if (values := parse(line, f'"{name}" line {number}'))])
+    if len(table) < 2:
+        raise InputError(
+            f'"{name}" holds no Earth orientation: {len(table)} days were found, two at least are needed. Expected finals2000A '
+            "(fixed columns) or a C04 series of the IERS."
+        )
+    mjd, pole_x, pole_y, ut1_minus_utc = table.T
+    late = np.flatnonzero(np.diff(mjd) <= 0.0)
+    if late.size:
+        raise InputError(f'"{name}": the day {day_of(mjd[late[0] + 1])} comes after {day_of(mjd[late[0]])}; days must increase.')
+    return EarthOrientation(name, mjd, ut1_minus_utc - leap_seconds(mjd), pole_x, pole_y)
+
+
+def _finals_row(line: str, where: str) -> tuple[float, ...] | None:
+    """MJD, pole x, y and UT1-UTC of a line of finals2000A; None for the empty days at its end."""
+    fields = line[7:15], line[18:27], line[37:46], line[58:68]
+    return _row(fields, where) if all(field.strip() for field in fields) else None
+
+
+def _c04_row(line: str, where: str) -> tuple[float, ...]:
+    """MJD, pole x, y and UT1-UTC of a line of C04, of 2020 (with an hour before the MJD) or before."""
+    words = line.split()
+    start = 3 if float(words[3]) > 1000.0 else 4
+    return _row(words[start : start + 4], where)
+
+
+def _row(fields, where: str) -> tuple[float, ...]:
+    """Four numbers that can be a day's orientation."""
+    try:
+        mjd, pole_x, pole_y, ut1_minus_utc = (float(field) for field in fields)
+    except ValueError:
+        raise InputError(f"{where}: MJD, pole x, pole y and UT1-UTC read {' '.join(fields)!r:.60}, not four numbers.") from None
+    if not (30000.0 < mjd < 90000.0 and abs(pole_x) < 2.0 and abs(pole_y) < 2.0 and abs(ut1_minus_utc) < 1.0):
+        raise InputError(
+            f"{where}: MJD {mjd:g}, pole {pole_x:g}, {pole_y:g} arcseconds and UT1-UTC {ut1_minus_utc:g} s cannot be a day's "
+            "orientation; expected under 2 arcseconds and 1 s. Have columns shifted?"
+        )
+    return mjd, pole_x, pole_y, ut1_minus_utc
 
 
 def leap_seconds(mjd) -> np.ndarray:

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from fieldline.errors import InputError
+from fieldline.files import read_text
 from fieldline.frames.earth_orientation import EarthOrientation
 from fieldline.orbit.element_orbit import ElementOrbit
 from fieldline.orbit.element_set import ElementSet
+from fieldline.orbit.oem import parse_oem
+from fieldline.orbit.omm import parse_omm_csv, parse_omm_json, parse_omm_kvn, parse_omm_xml
 from fieldline.orbit.orbit import Orbit
-from fieldline.orbit.tle import parse_tle
+from fieldline.orbit.tle import is_element_line, parse_tle
 
-EXPECTED = "Expected a TLE, an OMM (JSON, XML, KVN, CSV) or an OEM (KVN)."
+EXPECTED = "Expected a TLE, an OMM (JSON, XML, KVN or CSV) or an OEM (KVN)."
+ELEMENT_PARSERS = {
+    "TLE": parse_tle,
+    "OMM JSON": parse_omm_json,
+    "OMM XML": parse_omm_xml,
+    "OMM KVN": parse_omm_kvn,
+    "OMM CSV": parse_omm_csv,
+}
 
 
 def read_orbit(path: str | Path, *, norad_id: int | None = None, eop: EarthOrientation | None = None) -> Orbit:
@@ -25,13 +36,61 @@ def read_orbit(path: str | Path, *, norad_id: int | None = None, eop: EarthOrien
 
     Errors: InputError for a file that is missing, empty, of another kind, damaged, or of several satellites.
     """
-    text, source = read_text(path), Path(path).name
-    return _element_orbit("TLE", parse_tle(text, source), source, norad_id, eop)
+    text, source = read_text(path, "orbit file"), Path(path).name
+    kind = orbit_kind(text, source)
+    if kind == "OEM":
+        if norad_id is not None:
+            raise InputError(
+                f'"{source}" is an OEM, which is not chosen from by catalogue number: leave --norad-id (norad_id) out.'
+            )
+        return parse_oem(text, source, eop)
+    return _element_orbit(kind, ELEMENT_PARSERS[kind](text, source), source, norad_id, eop)
 
 
-def read_text(path: str | Path) -> str:
-    """A text file's content, UTF-8 with or without its mark."""
-    return Path(path).read_bytes().decode("utf-8-sig")
+def orbit_kind(text: str, source: str) -> str:
+    """Which of the known formats a text is in; InputError with what it looks like instead."""
+    body = text.lstrip()
+    opening = body[:4096].lower()
+    if body.startswith(("{", "[")):
+        return "OMM JSON"
+    if body.startswith("<"):
+        return _xml_kind(opening, source)
+    message = re.search(r"^\s*CCSDS_(\w+)_VERS\s*=", body, re.MULTILINE)
+    if message:
+        if message[1] in ("OMM", "OEM"):
+            return "OEM" if message[1] == "OEM" else "OMM KVN"
+        raise InputError(f'"{source}" is a CCSDS {message[1]}. {EXPECTED}')
+    lines = body.splitlines()
+    if any(is_element_line(line.strip().replace("\t", " ")) for line in lines):
+        return "TLE"
+    if "," in lines[0] and {"EPOCH", "MEAN_MOTION"} <= {word.strip().upper() for word in lines[0].split(",")}:
+        return "OMM CSV"
+    raise InputError(f'"{source}" holds no orbit: its first line is "{_quotable(lines[0])}". {EXPECTED}{_guess(lines)}')
+
+
+def _xml_kind(opening: str, source: str) -> str:
+    """OMM, or what the tags say instead."""
+    if re.search(r"<(\w+:)?(omm|ndm)\b", opening):
+        return "OMM XML"
+    if "<html" in opening or "<!doctype html" in opening:
+        raise InputError(f'"{source}" is a web page, not an orbit: the download gave a page instead of the data. Fetch it again.')
+    if re.search(r"<(\w+:)?oem\b", opening):
+        raise InputError(f'"{source}" is an OEM in XML; only its text form (KVN) is read. Convert it, or use a TLE.')
+    raise InputError(f'"{source}" is XML without an <omm> in it. {EXPECTED}')
+
+
+def _guess(lines: list[str]) -> str:
+    """What a file that is no orbit may be."""
+    if any(line.strip()[:2] in ("1 ", "2 ") for line in lines):
+        return " A line begins as a TLE's does and is too short: was the file cut?"
+    if "," in lines[0] or ";" in lines[0]:
+        return " It looks like a table: were telemetry and orbit given in each other's place?"
+    return ""
+
+
+def _quotable(line: str) -> str:
+    """The beginning of a line, safe to print."""
+    return "".join(c if c.isprintable() else "?" for c in line[:60])
 
 
 def _element_orbit(kind: str, sets: list[ElementSet], source: str, norad_id: int | None, eop) -> ElementOrbit:
