@@ -1,1 +1,1 @@
-
+"""One file per paper: its set-ups as plain functions that return Datasets."""

@@ -142,7 +142,8 @@ def fit_kernel(lapse, field_b, field_i, q, omega, sigma, rounds, covariance):
     gradient, step = np.zeros(SIZE), np.zeros(SIZE)
     cost = chi_square_kernel(lapse, field_b, field_i, q, omega, sigma)
     damping, used = 1e-3, 0
-    for used in range(1, rounds + 1):
+    for _ in range(rounds):
+        used += 1
         normal_equations_kernel(lapse, field_b, field_i, q, omega, sigma, normal, gradient)
         fall = 0.0
         while damping < DAMPING_MAX:
@@ -230,7 +231,7 @@ def starts_on_circle(field_b, field_i, count: int = 8) -> np.ndarray:
     from scipy.spatial.transform import Rotation
 
     body, inertial = (np.asarray(x, dtype=float) / np.linalg.norm(x) for x in (field_b, field_i))
-    first, _ = Rotation.align_vectors(inertial[None], body[None])
+    first = Rotation.align_vectors(inertial[None], body[None])[0]
     turns = Rotation.from_rotvec(np.multiply.outer(2.0 * np.pi * np.arange(count) / count, inertial))
     return (turns * first).as_quat()
 
