@@ -8,7 +8,7 @@ from fieldline.errors import InputError
 
 # The polar surface is 6,356.8 km from the centre and the field's models are published to 10 km below it.
 LEAST_RADIUS_M = 6.346e6
-MOST_RADIUS_M = 1.0e9  # beyond the Moon twice over: rather a wrong unit than a place
+MOST_RADIUS_M = 2.0e9  # five times as far as the Moon, past the tip of the Earth's shadow: rather a wrong unit
 
 
 def as_positions(name: str, position, axes: str) -> np.ndarray:
@@ -50,7 +50,7 @@ def _what_is_wrong(name: str, flat: np.ndarray, fine: np.ndarray) -> str:
     radius = float(np.linalg.norm(flat[row]))
     said = f"{where} is {radius:.4g} m from the Earth's centre"
     if radius > MOST_RADIUS_M:
-        return f"{said}, beyond twice the distance of the Moon. Is it in millimetres? Multiply by 1e-3."
+        return f"{said}, five times as far as the Moon. Is it in millimetres? Multiply by 1e-3."
     if LEAST_RADIUS_M <= 1e3 * radius <= 4e8:
         return f"{said}, inside the Earth. Is it in kilometres? Multiply by 1e3."
     if abs(flat[row, 0]) <= 90.0 and abs(flat[row, 1]) <= 360.0:
