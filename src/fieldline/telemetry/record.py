@@ -26,12 +26,6 @@ class Recognised:
     offset: float = 0.0
     why: str = "by its name"
 
-    def sentence(self) -> str:
-        """For example: mag_x_nT is the magnetometer, x, in nT (by its name)."""
-        axis = f", {self.axis}" if self.axis else ""
-        unit = f", in {self.unit}" if self.unit else ""
-        return f"{self.column} is the {self.quantity.replace('_', ' ')}{axis}{unit} ({self.why})"
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quality:
@@ -113,7 +107,8 @@ class Telemetry:
         count = len(self.time_utc)
         if self.field_s.shape != (count, 3) or self.usable.shape != (count,):
             raise InputError(
-                f"telemetry needs field_s (n, 3) and usable (n,) for {count} times; got {self.field_s.shape} and {self.usable.shape}."
+                f"telemetry needs field_s (n, 3) and usable (n,) for {count} times; "
+                f"got {self.field_s.shape} and {self.usable.shape}."
             )
 
     def __len__(self) -> int:
@@ -152,8 +147,18 @@ class Telemetry:
         changes = {f.name: every(getattr(self, f.name)) for f in dataclasses.fields(self)}
         return Telemetry(**changes)
 
+    def recognised(self) -> list[str]:
+        """What was read as what, a sentence for each quantity and unit."""
+        groups: dict[tuple[str, str, str], list[Recognised]] = {}
+        for record in self.recognition:
+            groups.setdefault((record.quantity, record.unit, record.why), []).append(record)
+        lines = []
+        for (quantity, unit, why), records in groups.items():
+            names = ", ".join(record.column + (f" ({record.axis})" if record.axis else "") for record in records)
+            lines.append(f"{quantity.replace('_', ' ')}: {names}{f' in {unit}' if unit else ''}, {why}")
+        return lines
+
     def describe(self) -> list[str]:
         """What was read, as what, and how good it is: sentences for the terminal and the report."""
-        span = np.datetime_as_string(self.time_utc[[0, -1]], unit="s")
-        first = f"{self.name}: {span[0].replace('T', ' ')} to {span[1].replace('T', ' ')} UTC"
-        return [first, *self.quality.sentences(), *(r.sentence() for r in self.recognition), *self.ignored]
+        first, last = (str(time).replace("T", " ") for time in np.datetime_as_string(self.time_utc[[0, -1]], unit="s"))
+        return [f"{self.name}: {first} to {last} UTC", *self.quality.sentences(), *self.recognised(), *self.ignored]
