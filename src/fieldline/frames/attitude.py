@@ -41,9 +41,9 @@ def quat_conj(q):
     return (-q[0], -q[1], -q[2], q[3])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def quat_unit(q):
-    """q / |q|."""
+    """q / |q|; NaN where q is zero, for the caller to find."""
     s = 1.0 / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     return (s * q[0], s * q[1], s * q[2], s * q[3])
 

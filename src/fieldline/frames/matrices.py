@@ -109,9 +109,9 @@ def determinant(a):
     )
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def inverse(a):
-    """A^-1 by cofactors; the caller sees to it that det a is not zero."""
+    """A^-1 by cofactors; infinities where det a is zero, for the caller to find."""
     s = 1.0 / determinant(a)
     return (
         s * (a[4] * a[8] - a[5] * a[7]),

@@ -1,0 +1,89 @@
+"""`calibrate`: the calibration of a magnetometer from telemetry and an orbit, without attitude.
+
+    | gain(t) D (field_s - bias ...) | = | B(position_e(t), t) |
+
+The magnitude of the field is the same in all axes, so position and time are all that is needed of the flight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fieldline.errors import InputError, nearest
+from fieldline.estimation.calibration import Calibration, Flight, calibrate_flights
+from fieldline.estimation.reference import Reference, reference_along_orbit
+from fieldline.orbit import Orbit
+from fieldline.telemetry import Telemetry
+
+COLUMNS = {"temperature": "temperature_k", "dipole": "dipole_command_b", "current": "solar_current"}
+
+
+def calibrate(
+    telemetry: Telemetry | Sequence[Telemetry],
+    orbit: Orbit | Sequence[Orbit],
+    *,
+    model: str = "IGRF-14",
+    calibration: str = "auto",
+    use: Sequence[str] = (),
+) -> Calibration | tuple[Calibration, ...]:
+    """Bias, matrix and, where the data support them, gain, drift and couplings of a magnetometer.
+
+    Parameters
+    ----------
+    telemetry : one file's Telemetry, or several of one satellite, which then share matrix and bias.
+    orbit : the satellite's orbit; one for all files, or one for each.
+    model : the field model.      calibration : the sensor's model, as of `calibrate_magnitude`; "auto" lets the data decide.
+    use : columns that terms may be fitted to, of "temperature", "dipole", "current".
+
+    Returns
+    -------
+    Calibration for one Telemetry; a tuple of them, in order, for several.
+
+    Errors: InputError for what cannot be read as asked; NoEstimateError where the data do not support a calibration.
+    """
+    several = not isinstance(telemetry, Telemetry)
+    flown = list(telemetry) if several else [telemetry]
+    orbits = list(orbit) if isinstance(orbit, list | tuple) else [orbit] * len(flown)
+    if len(orbits) != len(flown):
+        raise InputError(f"one orbit, or one for each of the {len(flown)} telemetries, is needed; got {len(orbits)}.")
+    references = [reference_along_orbit(t.time_utc, o, model) for t, o in zip(flown, orbits, strict=True)]
+    found = calibrate_against(flown, references, calibration=calibration, use=use)
+    return found if several else found[0]
+
+
+def calibrate_against(
+    flown: Sequence[Telemetry], references: Sequence[Reference], *, calibration: str = "auto", use: Sequence[str] = ()
+) -> tuple[Calibration, ...]:
+    """`calibrate` where the reference along each orbit is already there."""
+    unknown = [name for name in use if name not in COLUMNS]
+    if unknown:
+        raise InputError(f'use: there is no column "{unknown[0]}"; {nearest(unknown[0], COLUMNS)}')
+    flights = [_flight(t, r.magnitude, use) for t, r in zip(flown, references, strict=True)]
+    return calibrate_flights(_on_one_clock(flights), model=calibration)
+
+
+def _flight(telemetry: Telemetry, magnitude_tesla: np.ndarray, use: Sequence[str]) -> Flight:
+    """What the calibration sees of a telemetry."""
+    given = {COLUMNS[name]: getattr(telemetry, COLUMNS[name]) for name in use}
+    missing = [name for name in use if given[COLUMNS[name]] is None]
+    if missing:
+        raise InputError(f'use "{missing[0]}": "{telemetry.name}" has no column that was recognised as that.')
+    return Flight(
+        seconds=telemetry.seconds,
+        field_s=telemetry.field_s,
+        magnitude_tesla=magnitude_tesla,
+        usable=telemetry.usable,
+        epoch_utc=telemetry.epoch_utc,
+        name=telemetry.name,
+        **given,
+    )
+
+
+def _on_one_clock(flights: list[Flight]) -> list[Flight]:
+    """The flights with seconds since the first one's epoch, since they share one reference time."""
+    epoch = flights[0].epoch_utc
+    later = [(f.epoch_utc - epoch) / np.timedelta64(1, "s") for f in flights]
+    return [replace(f, seconds=f.seconds + s, epoch_utc=epoch) for f, s in zip(flights, later, strict=True)]

@@ -1,0 +1,220 @@
+"""Multiplicative Kalman filter and smoother: attitude and body rate from the field measured along an orbit.
+
+State: quaternion q_bi, rate w = omega_bi_b, coloured measurement error c (body axes, first-order Gauss-Markov).
+
+    b = A(q) B_i + c + noise,    H = [ [A B_i x], 0, I ]                                                (1)
+    R = r^2 I + t^2 (w x b)(w x b)^T                                                                    (2)
+    c+ = f c + sqrt(1 - f^2) s_c white,   f = exp(-h / tau)                                             (3)
+
+t [s] is the jitter of the time stamps: on a body that turns 46 deg between samples, 20 ms of it outweigh the noise of a
+magnetometer. c stands for what a calibration leaves and a field model lacks: its size is read from the magnitude, which
+no attitude can explain, so the filter cannot turn such errors into motion.
+
+Smoother (Bryson and Frazier): with the adjoint l, L run backwards from zero,
+
+    l~ = (I - K H)^T l - H^T S^-1 v,     L~ = (I - K H)^T L (I - K H) + H^T S^-1 H                      (4)
+    l' = F^T l~,                         L' = F^T L~ F                                                  (5)
+    x_s = x_f - P_f l,                   P_s = P_f - P_f L P_f                                          (6)
+
+It needs no inverse of a covariance and continues from chunk to chunk, so a long record takes bounded memory.
+
+Source: Markley and Crassidis (2014), s. 6.2; Bierman (1973), Automatica 9:503 for (4) to (6).
+Valid while an update's correction is small against a radian: starts come from `estimation.starts`.
+"""
+
+from __future__ import annotations
+
+from math import exp, inf, isfinite, log, pi
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from fieldline.estimation import covariance as cov
+from fieldline.estimation.motion import propagate
+from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit, to_body
+from fieldline.frames.matrices import determinant, matadd, matmul, matscale, matvec, skew
+from fieldline.frames.vectors import add, cross, dot, put, scale, sub, vec
+
+STATES = 10  # q (4), w (3), c (3) in a row
+CHUNK = 65_536  # rows kept at a time by the smoother: 34 MB of states and covariances
+
+
+class Noise(NamedTuple):
+    """What disturbs a measurement. white, coloured [T], coloured_time [s], jitter [s]; gate: largest NIS taken whole."""
+
+    white: float
+    coloured: float = 0.0
+    coloured_time: float = 600.0
+    jitter: float = 0.0
+    gate: float = 25.0
+
+
+@njit(cache=True)
+def noise_matrix(w, body, noise):
+    """R of (2)."""
+    u = cross(w, body)
+    t2, r2 = noise.jitter * noise.jitter, noise.white * noise.white
+    xy, xz, yz = t2 * u[0] * u[1], t2 * u[0] * u[2], t2 * u[1] * u[2]
+    return (r2 + t2 * u[0] * u[0], xy, xz, xy, r2 + t2 * u[1] * u[1], yz, xz, yz, r2 + t2 * u[2] * u[2])
+
+
+@njit(cache=True)
+def innovation(q, w, c, p, measured, reference, noise, coloured):
+    """Residual, h, gains, S^-1, NIS and log-likelihood of one vector; beyond the gate R is stretched to meet it."""
+    body = to_body(q, reference)
+    h = skew(body)
+    r = noise_matrix(w, body, noise)
+    residual = sub(measured, add(body, c))
+    ga, gr, gc, s = cov.measurement_gain(p, h, r, coloured)
+    s_inv = cov.inverted(s)
+    nis = dot(residual, matvec(s_inv, residual))
+    cost = nis
+    if nis > noise.gate:
+        # an outlier moves the state no more than a sample at the gate; its cost grows with the logarithm (Student-like)
+        cost = noise.gate * (1.0 + log(nis / noise.gate))
+        s = matadd(s, matscale(nis / noise.gate - 1.0, r))
+        s_inv = cov.inverted(s)
+    log_likelihood = -0.5 * (cost + log(determinant(s)) + 3.0 * log(2.0 * pi))
+    return residual, h, ga, gr, gc, s_inv, nis, log_likelihood
+
+
+@njit(cache=True)
+def _row_state(states, k):
+    """q, w, c of a row."""
+    r = states[k]
+    return (r[0], r[1], r[2], r[3]), (r[4], r[5], r[6]), (r[7], r[8], r[9])
+
+
+@njit(cache=True)
+def _put_state(states, k, q, w, c):
+    """Store q, w, c as a row."""
+    for j in range(4):
+        states[k, j] = q[j]
+    for j in range(3):
+        states[k, 4 + j] = w[j]
+        states[k, 7 + j] = c[j]
+
+
+@njit(cache=True)
+def _fade(h, noise, coloured):
+    """F of (3) and the variance that the coloured error gains over h."""
+    if not coloured:
+        return 1.0, 0.0
+    f = exp(-abs(h) / noise.coloured_time)
+    return f, (1.0 - f * f) * noise.coloured * noise.coloured
+
+
+@njit(cache=True)
+def filter_forward(series, first, before, start, prior, noise, model, states, blocks, nis):
+    """Filter samples; returns the log-likelihood and leaves the last state and covariance in start and prior.
+
+    series: see `estimation.series`, n rows. start (1, 10) and prior (1, 54) hold at the
+    first sample (first true) or at the time `before` [s], one step earlier. states (n, 10), blocks (n, 54) and nis (n,)
+    are filled where they have n rows; with no rows only the likelihood is wanted.
+    """
+    seconds, field_b, field_i, pull_i, used = series
+    n = seconds.shape[0]
+    keep = states.shape[0] == n
+    coloured = noise.coloured > 0.0
+    q, w, c = _row_state(start, 0)
+    p = cov.load(prior, 0)
+    total = 0.0
+    for k in range(n):
+        if k > 0 or not first:
+            h = seconds[k] - (seconds[k - 1] if k > 0 else before)
+            q, w, phi, psi, lam = propagate(q, w, vec(field_i, max(k - 1, 0)), vec(pull_i, max(k - 1, 0)), h, model)
+            f, drive = _fade(h, noise, coloured)
+            c = scale(f, c)
+            p = cov.step_forward(p, phi, psi, lam, f, drive, model.noise, h, coloured)
+        value = -1.0
+        if used[k]:
+            residual, hk, ga, gr, gc, s_inv, value, gained = innovation(
+                q, w, c, p, vec(field_b, k), vec(field_i, k), noise, coloured
+            )
+            v = matvec(s_inv, residual)
+            q = quat_unit(quat_mul(q, quat_exp(matvec(ga, v))))
+            w = add(w, matvec(gr, v))
+            if coloured:
+                c = add(c, matvec(gc, v))
+            p = cov.updated(p, ga, gr, gc, s_inv, coloured)
+            total += gained
+            if not isfinite(total):
+                return -inf
+        if keep:
+            _put_state(states, k, q, w, c)
+            cov.store(blocks, k, p)
+            nis[k] = value
+    _put_state(start, 0, q, w, c)
+    cov.store(prior, 0, p)
+    return total
+
+
+@njit(cache=True)
+def smooth_backward(series, first, before, start, prior, noise, model, states, blocks, adjoint_v, adjoint_m):
+    """Filtered rows become smoothed ones, by (4) to (6); start and prior are those of the forward pass over the rows.
+
+    adjoint_v (9,) and adjoint_m (1, 54) hold l and L after the last row (zero at the record's end) and leave holding
+    them before the first one.
+    """
+    seconds, field_b, field_i, pull_i, used = series
+    n = seconds.shape[0]
+    coloured = noise.coloured > 0.0
+    va = (adjoint_v[0], adjoint_v[1], adjoint_v[2])
+    vr = (adjoint_v[3], adjoint_v[4], adjoint_v[5])
+    vc = (adjoint_v[6], adjoint_v[7], adjoint_v[8])
+    m = cov.load(adjoint_m, 0)
+    for k in range(n - 1, -1, -1):
+        q_f, w_f, c_f = _row_state(states, k)
+        p_f = cov.load(blocks, k)
+        if k > 0:
+            q, w, c = _row_state(states, k - 1)
+            p = cov.load(blocks, k - 1)
+        else:
+            q, w, c = _row_state(start, 0)
+            p = cov.load(prior, 0)
+        moves = k > 0 or not first
+        phi, psi, lam, f = cov.IDENTITY, cov.ZERO9, cov.IDENTITY, 1.0
+        if moves:
+            h = seconds[k] - (seconds[k - 1] if k > 0 else before)
+            q, w, phi, psi, lam = propagate(q, w, vec(field_i, max(k - 1, 0)), vec(pull_i, max(k - 1, 0)), h, model)
+            f, drive = _fade(h, noise, coloured)
+            c = scale(f, c)
+            p = cov.step_forward(p, phi, psi, lam, f, drive, model.noise, h, coloured)
+        ea, er, ec = cov.times(p_f, va, vr, vc, coloured)
+        q_s = quat_unit(quat_mul(q_f, quat_exp(scale(-1.0, ea))))
+        _put_state(states, k, q_s, sub(w_f, er), sub(c_f, ec))
+        cov.store(blocks, k, cov.smoothed(p_f, m, coloured))
+        if used[k]:
+            residual, hk, ga, gr, gc, s_inv, nis, gained = innovation(
+                q, w, c, p, vec(field_b, k), vec(field_i, k), noise, coloured
+            )
+            ka, kr, kc = matmul(ga, s_inv), matmul(gr, s_inv), matmul(gc, s_inv)
+            g = add(cov.transposed_gain(ka, kr, kc, va, vr, vc, coloured), matvec(s_inv, residual))
+            va, vc = cov.innovated(va, vc, hk, g)
+            m = cov.measured_adjoint(m, hk, ka, kr, kc, s_inv, coloured)
+        if moves:
+            va, vr, vc = cov.vectors_back(va, vr, vc, phi, psi, lam, f)
+            m = cov.step_backward(m, phi, psi, lam, f, coloured)
+    for j in range(3):
+        adjoint_v[j] = va[j]
+        adjoint_v[3 + j] = vr[j]
+        adjoint_v[6 + j] = vc[j]
+    cov.store(adjoint_m, 0, m)
+
+
+@njit(cache=True)
+def predicted_fields(states, field_i, body):
+    """Fill body (n, 3) with the reference field in the estimated body axes."""
+    for k in range(states.shape[0]):
+        q = (states[k, 0], states[k, 1], states[k, 2], states[k, 3])
+        put(body, k, to_body(q, vec(field_i, k)))
+
+
+def prior_blocks(attitude_std_rad, rate_std_rad_s, coloured_tesla: float = 0.0) -> np.ndarray:
+    """(1, 54) covariance of independent errors: attitude [rad], rate [rad/s] (scalars or per axis), coloured [T]."""
+    blocks = np.zeros((1, cov.BLOCKS))
+    blocks[0, [0, 4, 8]] = np.broadcast_to(np.asarray(attitude_std_rad, float) ** 2, 3)
+    blocks[0, [18, 22, 26]] = np.broadcast_to(np.asarray(rate_std_rad_s, float) ** 2, 3)
+    blocks[0, [45, 49, 53]] = coloured_tesla**2
+    return blocks

@@ -1,0 +1,72 @@
+"""From candidates to one motion: every start is filtered over the whole arc, and the innovations choose.
+
+Screening costs one pass of the filter per candidate and rate noise; the likeliest few are fitted over longer windows,
+smoothed, and tuned. Candidates of both kinds of rate model compete on one scale: the log-likelihood of the innovations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fieldline.estimation.kalman import Noise
+from fieldline.estimation.series import Series
+from fieldline.estimation.smoothing import Smoothed, log_likelihood, smooth, state_at_first
+from fieldline.estimation.starts import Candidate, lengthened
+from fieldline.estimation.tuning import best_rate_noise, tune
+
+KEPT = 4  # candidates of a kind that are smoothed
+SCREEN_NOISES = (1e-6, 3e-5, 1e-3)  # [rad/s/sqrt(s)] rate noises of the screening
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Contender:
+    """A candidate after the filter has run from it over the whole arc."""
+
+    candidate: Candidate
+    smoothed: Smoothed
+
+    @property
+    def log_likelihood(self) -> float:
+        """Of its innovations."""
+        return self.smoothed.log_likelihood
+
+
+def screen(series: Series, candidates: list[Candidate], noise: Noise) -> list[tuple[float, Candidate]]:
+    """Candidates with their best log-likelihood under SCREEN_NOISES, the likeliest first."""
+    scored = []
+    for candidate in candidates:
+        best = -np.inf
+        for rate_noise in SCREEN_NOISES:
+            model = candidate.motion.model(rate_noise)
+            start = state_at_first(series, candidate.row, candidate.state, noise, model)
+            if np.isfinite(start).all():
+                value = log_likelihood(series, start, noise, model)
+                best = max(best, value) if np.isfinite(value) else best
+        if np.isfinite(best):
+            scored.append((best, candidate))
+    return sorted(scored, key=lambda pair: -pair[0])
+
+
+def contend(series: Series, candidates: list[Candidate], noise: Noise, noise_tesla: float) -> list[Contender]:
+    """The likeliest candidates after longer fits and two passes of the smoother, the likeliest first."""
+    contenders = []
+    for _, candidate in screen(series, candidates, noise)[:KEPT]:
+        if candidate.motion.shape is not None or candidate.motion.inertia is not None:
+            candidate = lengthened(series, candidate, noise_tesla)
+        model = candidate.motion.model(SCREEN_NOISES[1])
+        start = state_at_first(series, candidate.row, candidate.state, noise, model)
+        model = best_rate_noise(series, start, noise, model)
+        start = state_at_first(series, candidate.row, candidate.state, noise, model)
+        result = smooth(series, start, noise, model, passes=2)
+        if np.isfinite(result.log_likelihood):
+            contenders.append(Contender(candidate=candidate, smoothed=result))
+    return sorted(contenders, key=lambda c: -c.log_likelihood)
+
+
+def settle(series: Series, contender: Contender, floor: float) -> Contender:
+    """The contender with noise and rate noise tuned by likelihood, smoothed again from its own start."""
+    before = contender.smoothed
+    noise, model, _ = tune(series, before.start, before.noise, before.model, floor)
+    return replace(contender, smoothed=smooth(series, before.start, noise, model, passes=2))

@@ -1,0 +1,82 @@
+"""How noisy the magnetometer is and how freely the rate wanders, read from the data.
+
+The likelihood of the filter's innovations is climbed over the logarithms of white noise, slow error, its correlation time
+and the rate's noise. The magnitude guards the climb: what it leaves, no attitude can explain, so the white noise and the
+slow error together are not allowed below its residual. Without that floor a likelihood alone lets the rate follow every
+error of a magnetically dirty body.                                                                          (1)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fieldline.estimation.kalman import Noise
+from fieldline.estimation.motion import RateModel
+from fieldline.estimation.series import Series, part
+from fieldline.estimation.smoothing import log_likelihood
+
+LONGEST = 20_000  # rows that a tuning reads: the middle of a longer arc
+RATE_NOISES = np.geomspace(1e-7, 1e-2, 11)  # [rad/s/sqrt(s)] first look, from a quiet boom to a thruster
+
+
+def magnitude_noise(series: Series) -> float:
+    """[T] robust RMS per axis of |b| - |B|, what no attitude explains; quantisation and model error included."""
+    used = series.used
+    left = np.linalg.norm(series.field_b[used], axis=1) - np.linalg.norm(series.field_i[used], axis=1)
+    inner = 1.4826 * np.median(np.abs(left - np.median(left)))
+    return float(max(np.sqrt(np.mean(np.clip(left, -5 * inner, 5 * inner) ** 2)), 1e-9))
+
+
+def middle(series: Series) -> Series:
+    """At most LONGEST rows from the middle of an arc."""
+    n = len(series.seconds)
+    if n <= LONGEST:
+        return series
+    first = (n - LONGEST) // 2
+    return part(series, slice(first, first + LONGEST))
+
+
+def best_rate_noise(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> RateModel:
+    """The model with the rate noise of RATE_NOISES under which the arc is likeliest."""
+    trials = [model._replace(noise=float(s)) for s in RATE_NOISES]
+    return max(trials, key=lambda trial: _finite(log_likelihood(series, start, noise, trial)))
+
+
+def tune(series: Series, start: np.ndarray, noise: Noise, model: RateModel, floor: float) -> tuple[Noise, RateModel, float]:
+    """Noise and model with the greatest likelihood, under (1); returns the log-likelihood too.
+
+    start (7,) holds at the first row of the series; floor [T] is `magnitude_noise`.
+    """
+    from scipy.optimize import minimize
+
+    def decode(x):
+        white, coloured, time, rate = np.exp(np.clip(x, *_bounds(floor)))
+        return noise._replace(white=white, coloured=coloured, coloured_time=time), model._replace(noise=rate)
+
+    def cost(x):
+        trial, rate = decode(x)
+        total = -_finite(log_likelihood(series, start, trial, rate))
+        short = np.log(floor / np.hypot(trial.white, trial.coloured))
+        low, high = _bounds(floor)
+        outside = np.sum((x - np.clip(x, low, high)) ** 2)
+        # a floor that is missed by a tenth costs as much as the likelihood can gain over a few hundred samples
+        return total + 1e4 * max(short, 0.0) ** 2 + 1e3 * outside
+
+    x = np.log([noise.white, max(noise.coloured, 0.1 * floor), noise.coloured_time, model.noise])
+    simplex = x + np.vstack([np.zeros(4), np.diag([0.5, 0.7, 1.0, 1.2])])
+    options = {"xatol": 0.03, "fatol": 0.3, "maxfev": 220, "initial_simplex": simplex}
+    found = minimize(cost, x, method="Nelder-Mead", options=options)
+    tuned, rate = decode(found.x)
+    return tuned, rate, -float(found.fun)
+
+
+def _bounds(floor: float) -> tuple[np.ndarray, np.ndarray]:
+    """Logarithms of what is sensible: white, slow error, its time, rate noise."""
+    low = np.log([0.1 * floor, 0.02 * floor, 20.0, 1e-9])
+    high = np.log([10.0 * floor, 10.0 * floor, 20_000.0, 0.1])
+    return low, high
+
+
+def _finite(value: float) -> float:
+    """A likelihood that ran away counts as very bad."""
+    return value if np.isfinite(value) else -1e12
