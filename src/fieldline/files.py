@@ -5,38 +5,52 @@ from __future__ import annotations
 import codecs
 import hashlib
 import os
+import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from fieldline.errors import InputError
 
 
-def write_whole(path: str | Path, write: Callable[[Path], None]) -> Path:
+def write_whole(path: str | Path, write: Callable[[Path], object]) -> Path:
     """Let `write` fill a temporary file in the same folder, flush it to disk and rename it to `path`.
 
     Whatever stops `write` (an error, Ctrl-C, a full disk) leaves the old file as it was and no partial one.
     """
-    path = Path(path)
-    if not path.parent.is_dir():
-        raise InputError(f'cannot write "{path}": the folder "{path.parent}" does not exist. Make it first.')
+    return write_together([(Path(path), write)])[0]
+
+
+def write_together(files: Sequence[tuple[Path, Callable[[Path], object]]]) -> list[Path]:
+    """`write_whole` for several files: none is renamed into its place before all of them are written."""
+    staged: list[tuple[Path, Path]] = []
+    path = Path()
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-    except OSError as error:
-        raise InputError(f'cannot write in "{path.parent}": {error.strerror}. Choose another place with --out.') from error
-    os.close(handle)
-    beside = Path(name)
-    try:
-        write(beside)
-        with open(beside, "rb") as written:
-            os.fsync(written.fileno())
-        os.chmod(beside, 0o666 & ~_umask())
-        os.replace(beside, path)
+        for path, write in files:
+            beside = _beside(path)
+            staged.append((beside, path))
+            write(beside)
+            with open(beside, "rb") as written:
+                os.fsync(written.fileno())
+        for beside, path in staged:
+            os.replace(beside, path)
     except OSError as error:
         raise InputError(f'could not write "{path}": {error.strerror or error}. Nothing was changed there.') from error
     finally:
-        beside.unlink(missing_ok=True)
-    return path
+        for beside, _ in staged:
+            shutil.rmtree(beside.parent, ignore_errors=True)
+    return [path for _, path in staged]
+
+
+def _beside(path: Path) -> Path:
+    """A path of the same name in a new, hidden folder beside it."""
+    if not path.parent.is_dir():
+        raise InputError(f'cannot write "{path}": the folder "{path.parent}" does not exist. Make it first.')
+    try:
+        folder = tempfile.mkdtemp(prefix=f".{path.stem}-", dir=path.parent)
+    except OSError as error:
+        raise InputError(f'cannot write in "{path.parent}": {error.strerror}. Choose another place with --out.') from error
+    return Path(folder) / path.name
 
 
 def write_text_whole(path: str | Path, text: str) -> Path:
@@ -72,10 +86,3 @@ def sha256_of(path: str | Path) -> str:
     """Hex digest of a file's bytes, read in blocks."""
     with open(path, "rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _umask() -> int:
-    """The process's umask, which can only be read by setting it."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

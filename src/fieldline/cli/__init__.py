@@ -1,1 +1,73 @@
+"""The command line: `main` runs it and turns every end into an exit code and, at most, one paragraph.
 
+0 a usable result        1 ran, but the data do not support an estimate        2 bad input
+70 a fault in Fieldline  130 interrupted; nothing partial is left behind
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from fieldline.errors import FieldlineError
+
+INTERRUPTED = 130
+FAULT = 70
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run `fieldline` with these arguments (the process's by default) and return the exit code."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    debug = "--debug" in given
+    try:
+        return _run([one for one in given if one != "--debug"])
+    except FieldlineError as error:
+        if debug:
+            raise
+        return _tell(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        return _tell("interrupted; nothing was written.", INTERRUPTED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # whoever read our output has closed it
+        return 0
+    except MemoryError:
+        return _tell("out of memory: split the file, or thin it, and try again.", 2)
+    except Exception as error:
+        if debug:
+            raise
+        return _tell(
+            f"a fault in Fieldline itself ({type(error).__name__}: {error}). Run the same command with --debug and report what "
+            "it prints, together with the input if you can share it, to the project's issue tracker.",
+            FAULT,
+        )
+
+
+def _run(arguments: list[str]) -> int:
+    """Parse and run; what the parser refuses becomes a sentence too."""
+    import typer
+
+    from fieldline.cli.app import app
+
+    try:
+        code = typer.main.get_command(app).main(args=arguments, prog_name="fieldline", standalone_mode=False)
+    except typer.Abort as error:
+        raise KeyboardInterrupt from error
+    except Exception as error:
+        if not hasattr(error, "format_message"):
+            raise
+        return _refuse_usage(error)
+    return code if isinstance(code, int) else 0
+
+
+def _refuse_usage(error) -> int:
+    """A usage error of the parser: what was wrong and where the help is."""
+    command = getattr(getattr(error, "ctx", None), "command_path", "fieldline")
+    message = error.format_message() or "no command was given."
+    message = message.rstrip(".")
+    return _tell(f"{message}{'' if message.endswith('?') else '.'} See: {command} --help", 2)
+
+
+def _tell(message: str, code: int) -> int:
+    """One paragraph on stderr."""
+    print(f"fieldline: {message}", file=sys.stderr)
+    return code

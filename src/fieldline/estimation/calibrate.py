@@ -84,6 +84,6 @@ def _flight(telemetry: Telemetry, magnitude_tesla: np.ndarray, use: Sequence[str
 
 def _on_one_clock(flights: list[Flight]) -> list[Flight]:
     """The flights with seconds since the first one's epoch, since they share one reference time."""
-    epoch = flights[0].epoch_utc
-    later = [(f.epoch_utc - epoch) / np.timedelta64(1, "s") for f in flights]
-    return [replace(f, seconds=f.seconds + s, epoch_utc=epoch) for f, s in zip(flights, later, strict=True)]
+    epochs = np.array([f.epoch_utc for f in flights], dtype="datetime64[ns]")
+    later = (epochs - epochs[0]) / np.timedelta64(1, "s")
+    return [replace(f, seconds=f.seconds + s, epoch_utc=epochs[0]) for f, s in zip(flights, later, strict=True)]
