@@ -3,7 +3,7 @@
     UT1 - UTC = (UT1 - TAI)(t) + leap seconds(t)                                        (1)
 
 UT1 - TAI is interpolated linearly between the daily values, since it has no steps: the error of a straight line is
-under 0.1 ms (5 cm at the equator); the pole is interpolated likewise. Sub-daily tides are left out: 0.1 ms and 1 mas.
+under 0.25 ms (12 cm at the equator); the pole is interpolated likewise. Sub-daily tides are left out: 0.1 ms and 1 mas.
 
 Files: `finals2000A` (all, daily, data; fixed columns) and the C04 series (14 and 20; columns by blanks).
 Source: IERS readme.finals2000A; IERS C04 headers.

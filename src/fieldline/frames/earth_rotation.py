@@ -9,8 +9,8 @@ equinox such that R3(GMST82) alone turns it to Earth-fixed axes, so (2) follows 
 
 X, Y and s are computed every six hours and interpolated with cubics; ERA and GMST82 are exact at every time.
 The interpolation moves a satellite by less than 0.1 mm. UT1 = UTC and no polar motion unless `eop` is given:
-|UT1 - UTC| is kept under 0.9 s (418 m at the equator) and was under 0.1 s (46 m) from 2022 to 2026, and the
-pole wanders by 0.6 arcseconds (18 m) at most.
+|UT1 - UTC| is kept under 0.9 s (418 m at the equator) and was under 0.12 s (56 m) from 2022 to September 2026,
+and the pole wanders by 0.6 arcseconds (19 m) at most.
 
 Source: IERS Conventions (2010), TN 36, ch. 5; Vallado, Crawford, Hujsak and Kelso (2006), AIAA 2006-6753, app. C;
 the routines are those of ERFA. Valid from 1960, when UTC begins; before that UTC stands for UT1 and TAI alike.
@@ -29,8 +29,8 @@ from fieldline.frames.time import as_utc, utc_julian
 NODE_DAYS = 0.25  # spacing of X, Y, s: the 13.7-day nutation is interpolated to 1e-6 arcseconds
 WGS84 = 1  # ERFA's number of the ellipsoid
 NO_EOP_STATEMENT = (
-    "UT1 = UTC and no polar motion: up to 418 m along the equator (|UT1-UTC| < 0.9 s; under 46 m in 2022-2026) "
-    "and 18 m from the pole's wandering"
+    "UT1 = UTC and no polar motion: up to 418 m along the equator (|UT1-UTC| < 0.9 s; under 56 m in 2022-2026) "
+    "and 19 m from the pole's wandering"
 )
 
 

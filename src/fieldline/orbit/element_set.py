@@ -11,6 +11,7 @@ from fieldline.errors import InputError
 
 SGP4_DAY_ZERO = np.datetime64("1949-12-31", "ns")
 MINUTES_PER_DAY = 1440.0
+SGP4_XP = "4"  # ephemeris type, in TLE and OMM, of elements that SGP4 cannot carry
 REVOLUTIONS_PER_DAY_MAX = 18.0  # an orbit at the ground has 17
 
 

@@ -1,6 +1,6 @@
 """Orbit ephemeris messages (CCSDS 502.0, KVN): segments of states, turned to GCRS as they are read.
 
-    ITRF:     r_i = dcm_ei^T r_e,   v_i = dcm_ei^T (v_e + omega x r_e)                   (1)
+    ITRF:     r_i = dcm_ei^T r_e,   v_i = dcm_ei^T (v_e + omega_e x r_e)                  (1)
     EME2000:  r_i = B^T r_j         with the frame bias B (23 milliarcseconds)          (2)
     TEME:     r_i = dcm_it r_t                                                          (3)
     GCRF and ICRF have the axes of GCRS.
@@ -143,7 +143,8 @@ def to_gcrs(position, velocity, times, frame: str, where: str, eop: EarthOrienta
     name = frame.upper().replace(" ", "")
     if name.startswith("ITRF") or name == "WGS84":
         turn = np.swapaxes(dcm_ei(times, eop), -1, -2)
-        velocity = velocity + np.cross([0.0, 0.0, EARTH_ROTATION_RATE_RAD_S], position)
+        pole_e = np.einsum("nji,nj->ni", turn, dcm_ei(times)[:, 2])  # the axis of rotation, off z by polar motion
+        velocity = velocity + EARTH_ROTATION_RATE_RAD_S * np.cross(pole_e, position)
     elif INERTIAL.get(name) == "gcrs":
         return position, velocity
     elif INERTIAL.get(name) == "bias":

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 from fieldline.errors import InputError
 from fieldline.orbit.ccsds import key_value, parse_epoch
-from fieldline.orbit.element_set import ElementSet
+from fieldline.orbit.element_set import SGP4_XP, ElementSet
 
 REQUIRED = {
     "INCLINATION": "inclination_deg",
@@ -29,7 +29,6 @@ REQUIRED = {
 }
 OPTIONAL = {"MEAN_MOTION_DOT": "half_motion_rate_rev_day2", "MEAN_MOTION_DDOT": "sixth_motion_curvature_rev_day3"}
 MUST_BE = {"CENTER_NAME": {"EARTH"}, "REF_FRAME": {"TEME"}, "TIME_SYSTEM": {"UTC"}, "MEAN_ELEMENT_THEORY": {"SGP4", "SGP/SGP4"}}
-SGP4_XP = "4"  # ephemeris type, in TLE and OMM, of elements that SGP4 cannot carry
 
 
 def parse_omm_json(text: str, source: str) -> list[ElementSet]:

@@ -3,8 +3,9 @@
     r_i = dcm_ei^T r_e,   then a least-squares spline of degree 5 in time,  v_i = dr_i/dt       (1)
 
 Knots lie at samples at least 120 s apart, so that the noise of positions taken every second averages out, where sparser
-positions are passed through. The spline's own error in a low orbit is under 1 cm where positions come every 60 s or
-faster; every 300 s it is 1 m within and 120 m at the ends. Pauses over 300 s are not bridged and nothing is extrapolated. A smooth path that does not fall as gravity asks,
+positions are passed through. The spline's own error in a low orbit is under 3 cm where positions come every 60 s or
+faster; every 300 s it is 1 m within and 120 m at the ends. Pauses over 300 s are not bridged
+and nothing is extrapolated. A smooth path that does not fall as gravity asks,
 
     d = rms |a + GM r / |r|^3| / rms |GM r / |r|^3|                                            (2)
 

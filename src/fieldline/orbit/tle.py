@@ -15,7 +15,7 @@ import re
 import numpy as np
 
 from fieldline.errors import InputError
-from fieldline.orbit.element_set import ElementSet
+from fieldline.orbit.element_set import SGP4_XP, ElementSet
 
 LINE_LENGTH = 69
 SHORTEST_ELEMENT_LINE = 40  # shorter lines that begin with "1 " or "2 " are names
@@ -96,6 +96,8 @@ def _element_set(name: str, first: tuple[int, str], second: tuple[int, str], sou
     norad_id = _catalogue_number(line1, at1)
     if _catalogue_number(line2, at2) != norad_id:
         raise InputError(f"{at2} is of object {line2[2:7]}, line 1 before it of {line1[2:7]}: the lines do not belong together.")
+    if line1[62] == SGP4_XP:
+        raise InputError(f"{at1}: ephemeris type 4 is SGP4-XP, which SGP4 cannot carry; get the plain elements (type 0).")
     try:
         return ElementSet(
             name=name,
