@@ -29,6 +29,10 @@ class GaussCoefficients:
     h: np.ndarray
     radius_m: float = IGRF_REFERENCE_RADIUS_M
 
+    def __post_init__(self):
+        for array in (self.epochs, self.g, self.h):
+            array.flags.writeable = False
+
     @property
     def degree(self) -> int:
         """Highest degree n."""

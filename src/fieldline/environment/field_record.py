@@ -15,10 +15,9 @@ import numpy as np
 from fieldline.environment.coefficients import GaussCoefficients
 from fieldline.environment.harmonics import Basis, basis_for, field_table, gradient_table
 from fieldline.errors import InputError
-from fieldline.frames.time import decimal_year
+from fieldline.frames.time import as_utc, decimal_year, iso_utc
 
 NO_DIPOLES = np.zeros((0, 3))
-NO_DIPOLES.flags.writeable = False
 
 
 class FieldParams(NamedTuple):
@@ -60,6 +59,9 @@ class FieldModel:
     dipole_position_e: np.ndarray = field(default_factory=lambda: NO_DIPOLES)
     dipole_moment_e: np.ndarray = field(default_factory=lambda: NO_DIPOLES)
 
+    def __post_init__(self):
+        self.dipole_position_e.flags.writeable = self.dipole_moment_e.flags.writeable = False
+
     def truncated(self, degree: int | None = None, order: int | None = None) -> FieldModel:
         """The model up to a degree and an order; None leaves it as it is."""
         if degree is None and order is None:
@@ -76,7 +78,7 @@ class FieldModel:
         years = decimal_year(time_utc)
         first, last = self.years
         if years.size and (years.min() < first or years.max() > last):
-            raise InputError(self._outside(years))
+            raise InputError(self._outside(years, as_utc(time_utc)))
         return years
 
     def stamp(self, time_utc) -> dict:
@@ -131,13 +133,17 @@ class FieldModel:
     def _dipoles_alone(self) -> FieldTables:
         """No harmonics, hence empty tables, the same at all times."""
         nothing = basis_for(-1, -1, 1.0)
-        return FieldTables(nothing, np.array(self.years), np.zeros((2, 0)), self.dipole_position_e, self.dipole_moment_e)
+        epochs, tables = np.array(self.years), np.zeros((2, 0))
+        # Read-only like those of the harmonics: Numba compiles once for both.
+        epochs.flags.writeable = tables.flags.writeable = False
+        return FieldTables(nothing, epochs, tables, self.dipole_position_e, self.dipole_moment_e)
 
-    def _outside(self, years: np.ndarray) -> str:
-        """Why these years cannot be served, and what can."""
+    def _outside(self, years: np.ndarray, times: np.ndarray) -> str:
+        """Why these times cannot be served, and what can."""
         first, last = self.years
-        year = float(years.min()) if years.min() < first else float(years.max())
-        asked = f"time_utc holds the year {year:.2f}, but {self.name} covers {first:g} to {last:g}. "
+        worst = int(np.argmin(years) if years.min() < first else np.argmax(years))
+        year = float(years.flat[worst])
+        asked = f"time_utc holds {iso_utc(times.flat[worst], 0)}, but {self.name} covers {first:g} to {last:g}. "
         if 1900.0 <= year <= 2030.0:
             return asked + 'Use "IGRF-14" (1900 to 2030).'
         if year > last and self.coefficients is not None:

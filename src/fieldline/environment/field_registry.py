@@ -137,7 +137,6 @@ def _displaced_dipoles(position_e, moment_e) -> FieldModel:
 
 def _dipoles(name: str, position: np.ndarray, moment: np.ndarray) -> FieldModel:
     """A model of dipoles alone."""
-    position.flags.writeable = moment.flags.writeable = False
     return FieldModel(
         name=name,
         version=f"{len(position)} of given moment",
@@ -165,9 +164,12 @@ def _carried_on(model: FieldModel, until_year: float | None) -> FieldModel:
 
 def _vectors(name: str, value, unit: str) -> np.ndarray:
     """(D, 3) finite floats, one's own copy."""
-    vectors = np.array(value, dtype=float, ndmin=2)
+    try:
+        vectors = np.array(value, dtype=float, ndmin=2)
+    except (ValueError, TypeError):
+        vectors = np.empty(0)
     if vectors.ndim != 2 or vectors.shape[1] != 3 or not np.isfinite(vectors).all():
-        raise InputError(f"{name} must be finite vectors (D, 3) [{unit}]; got {np.shape(value)}: {value!r:.60}.")
+        raise InputError(f"{name} must be finite vectors (D, 3) [{unit}]; got {value!r:.80}.")
     return vectors
 
 

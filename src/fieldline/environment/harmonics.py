@@ -126,7 +126,7 @@ def gradient_table(g, h, order: int, radius_m: float) -> np.ndarray:
     x, y, _ = derivatives(g, h)
     (xx, xy, xz), (_, yy, yz) = derivatives(*x), derivatives(*y)
     pairs = [_negative(pair) for pair in (xx, xy, xz, yy, yz)]
-    return _table(pairs, order + 2) / radius_m
+    return _table(pairs, order + 2, 1.0 / radius_m)
 
 
 def derivatives(g, h):
@@ -157,17 +157,21 @@ def derivatives(g, h):
                 xh[..., n + 1, m - 1] += down * sine
                 yh[..., n + 1, m - 1] -= down * cosine
                 yg[..., n + 1, m - 1] += down * sine
+    for _, sine in out:
+        sine[..., 0] = 0.0  # sin 0: what a derivative leaves there would come back in the next one
     return out
 
 
-def _table(pairs, order: int) -> np.ndarray:
+def _table(pairs, order: int, factor: float = 1.0) -> np.ndarray:
     """Pairs (G, H) of coefficients as one flat row of sums, in the order in which the kernels read them."""
     degree = pairs[0][0].shape[-1] - 1
     n, m = np.array(_degrees_orders(degree, order)).T
     sectoral = np.cumprod([1.0, 1.0] + [sqrt((2 * k - 1) / (2 * k)) for k in range(2, degree + 1)])  # S_mm
     columns = [part[..., n, m] * sectoral[m] for pair in pairs for part in pair]
     table = np.stack(columns, axis=-1)
-    return np.ascontiguousarray(table.reshape(*table.shape[:-2], -1))
+    flat = np.ascontiguousarray(factor * table.reshape(*table.shape[:-2], -1))
+    flat.flags.writeable = False
+    return flat
 
 
 def _degrees_orders(degree: int, order: int) -> list[tuple[int, int]]:
