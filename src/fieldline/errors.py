@@ -25,6 +25,11 @@ class NoEstimateError(FieldlineError):
     exit_code = 1
 
 
+def shown(text: str, length: int = 40) -> str:
+    """A piece of the input as a message can show it: short, and no character that a terminal would obey."""
+    return "".join(c if c.isprintable() else "?" for c in " ".join(text[: 4 * length].split()))[:length]
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """A clause that names the nearest known word, or lists all of them when none is near."""
     known = sorted(known)

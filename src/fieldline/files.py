@@ -5,12 +5,15 @@ from __future__ import annotations
 import codecs
 import hashlib
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from fieldline.errors import InputError
+
+CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f\x7f-\x9f]")  # without tab, line ends, and the old mark of a file's end
 
 
 def write_whole(path: str | Path, write: Callable[[Path], object]) -> Path:
@@ -76,9 +79,9 @@ def read_text(path: str | Path, what: str) -> str:
         text = content.decode("latin-1")
     if not text.strip():
         raise InputError(f'the {what} "{path.name}" is empty.')
-    strange = sum((c < " " and c not in "\t\n\r\f\x1a") or "\x7f" <= c <= "\x9f" for c in text[:65536])
+    strange = len(CONTROL.findall(text))
     if strange:
-        raise InputError(f'the {what} "{path.name}" is binary, not text ({strange} control characters at its beginning).')
+        raise InputError(f'the {what} "{path.name}" is binary, not text (it holds {strange} control characters).')
     return text
 
 

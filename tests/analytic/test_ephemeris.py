@@ -179,6 +179,8 @@ BAD = {
     "letter": (GOOD.replace(ROW, ROW[:-3] + "x.y"), "could not convert"),
     "metres": (GOOD.replace(ROW, ROW.split()[0] + " 6850000e3 0 0 0 7.6 0"), "is it written in metres"),
     "nan": (GOOD.replace(ROW, ROW.split()[0] + " nan 0 0 0 7.6 0"), "distances run"),
+    "huge": (GOOD.replace(ROW, ROW.split()[0] + " 1e300 0 0 0 7.6 0"), "distances run"),
+    "metres a second": (GOOD.replace(ROW, ROW.split()[0] + " 6850 0 0 0 7600 0"), "is it written in m/s"),
     "order": (GOOD + ROW, "is not after the one before it"),
     "epoch": (GOOD.replace(ROW, "24/08/2023 1 2 3 4 5 6"), 'reads "24/08/2023"'),
     "method": (GOOD.replace("META_STOP", "INTERPOLATION = SPLINE\nMETA_STOP"), "INTERPOLATION is SPLINE"),
@@ -275,6 +277,7 @@ def refusals():
     return {
         "inertial": (times, circle(times)[0], "Are the columns in GCRS, J2000 or TEME"),
         "km": (times, positions(times) / 1000.0, "Are the columns in km"),
+        "huge": (times, positions(times) * np.logspace(0, 300, 6000)[:, None], "a satellite flies beyond"),
         "zero": (times, positions(times) * np.linspace(0.0, 1.0, 6000)[:, None], "from the Earth's centre"),
         "shape": (times, positions(times).T, r"must be \(6000, 3\)"),
         "three": (times[:3], positions(times[:3]), "needs 4 positions"),

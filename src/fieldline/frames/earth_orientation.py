@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 from fieldline.files import read_text
 from fieldline.frames.time import as_utc, iso_utc
 
@@ -99,7 +99,8 @@ def _row(fields, where: str) -> tuple[float, ...]:
     try:
         mjd, pole_x, pole_y, ut1_minus_utc = (float(field) for field in fields)
     except ValueError:
-        raise InputError(f"{where}: MJD, pole x, pole y and UT1-UTC read {' '.join(fields)!r:.60}, not four numbers.") from None
+        words = shown(" ".join(fields), 60)
+        raise InputError(f'{where}: MJD, pole x, pole y and UT1-UTC read "{words}", not four numbers.') from None
     if not (30000.0 < mjd < 90000.0 and abs(pole_x) < 2.0 and abs(pole_y) < 2.0 and abs(ut1_minus_utc) < 1.0):
         raise InputError(
             f"{where}: MJD {mjd:g}, pole {pole_x:g}, {pole_y:g} arcseconds and UT1-UTC {ut1_minus_utc:g} s cannot be a day's "

@@ -11,7 +11,7 @@ import re
 
 import numpy as np
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 from fieldline.frames.earth_orientation import MJD_UNIX_EPOCH, NS_PER_DAY, leap_seconds
 
 CALENDAR = re.compile(r"(\d{4})-(\d{2})-(\d{2})[T ](\d{2}:\d{2}:\d{2}(?:\.\d*)?)Z?")
@@ -24,7 +24,7 @@ def key_value(line: str, where: str) -> tuple[str, str]:
     """Key and value of one line."""
     key, equals, value = line.partition("=")
     if not equals:
-        raise InputError(f'{where} should read KEY = VALUE, it reads "{line.strip():.40}".')
+        raise InputError(f'{where} should read KEY = VALUE, it reads "{shown(line)}".')
     return key.strip().upper(), value.strip()
 
 
@@ -44,7 +44,7 @@ def parse_epoch(text: str, where: str) -> np.datetime64:
             raise ValueError(f"its year lies outside {YEARS[0]} to {YEARS[1]}")
         return day + _time_of_day(clock)
     except ValueError as error:
-        raise InputError(f'{where} reads "{text:.40}", no time as 2023-08-24T10:40:13.779: {error}.') from None
+        raise InputError(f'{where} reads "{shown(text)}", no time as 2023-08-24T10:40:13.779: {error}.') from None
 
 
 def _time_of_day(clock: str) -> np.timedelta64:
@@ -61,7 +61,7 @@ def utc_from(times: np.ndarray, time_system: str, where: str) -> np.ndarray:
     """(n,) datetime64[ns] UTC of times in another system, equation (1)."""
     system = time_system.upper()
     if system not in SECONDS_BEHIND_TAI:
-        raise InputError(f"{where}: TIME_SYSTEM is {time_system}; known: {', '.join(SECONDS_BEHIND_TAI)}.")
+        raise InputError(f"{where}: TIME_SYSTEM is {shown(time_system)}; known: {', '.join(SECONDS_BEHIND_TAI)}.")
     behind = SECONDS_BEHIND_TAI[system]
     if behind is None:
         return times

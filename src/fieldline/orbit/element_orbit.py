@@ -19,7 +19,7 @@ import numpy as np
 
 from fieldline.errors import InputError
 from fieldline.frames.earth_rotation import dcm_it
-from fieldline.frames.time import iso_utc, utc_julian
+from fieldline.frames.time import as_utc, iso_utc, utc_julian
 from fieldline.orbit.element_set import ElementSet
 from fieldline.orbit.orbit import MAX_AGE_DAYS, Orbit
 
@@ -49,7 +49,7 @@ class ElementOrbit(Orbit):
 
     def check(self, time_utc, max_age_days: float = MAX_AGE_DAYS) -> list[str]:
         """Warnings where elements are over 3 days from a sample; InputError where over `max_age_days`."""
-        flat = np.asarray(time_utc, dtype="datetime64[ns]").reshape(-1)
+        flat = as_utc(time_utc).reshape(-1)
         age = self._age_days(flat)
         if age.size and np.abs(age).max() > max_age_days:
             raise InputError(self._refusal(flat, age, max_age_days))

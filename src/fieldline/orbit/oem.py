@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fieldline.constants import EARTH_ROTATION_RATE_RAD_S
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 from fieldline.frames.earth_orientation import EarthOrientation
 from fieldline.frames.earth_rotation import dcm_ei, dcm_it
 from fieldline.orbit.ccsds import key_value, parse_epoch, utc_from
@@ -29,6 +29,7 @@ from fieldline.orbit.interpolation import PolynomialPath
 INERTIAL = {"GCRF": "gcrs", "ICRF": "gcrs", "GCRS": "gcrs", "EME2000": "bias", "J2000": "bias", "TEME": "teme"}
 DEFAULT_DEGREE = 7
 DEGREE_MAX = 15
+SPEED_MAX_KM_S = 20.0  # leaving the Earth for good takes 11
 METHODS = ("HERMITE", "LAGRANGE", "LINEAR")
 
 
@@ -48,7 +49,7 @@ def parse_oem(text: str, source: str, eop: EarthOrientation | None = None) -> Ep
         raise InputError(f'"{source}" is an OEM without a segment (META_START ... META_STOP, then states).')
     objects = sorted({s.keys.get("OBJECT_ID") or s.keys.get("OBJECT_NAME", "") for s in segments})
     if len(objects) > 1:
-        raise InputError(f'"{source}" holds several objects: {", ".join(objects[:8])}. Keep one object in a file.')
+        raise InputError(f'"{source}" holds several objects: {shown(", ".join(objects), 100)}. Keep one object in a file.')
     paths = sorted((_path(segment, source, eop) for segment in segments), key=lambda path: path.first_utc)
     return EphemerisOrbit(
         name=segments[0].keys.get("OBJECT_NAME") or objects[0] or source, kind="OEM", eop=eop, paths=tuple(paths)
@@ -89,7 +90,7 @@ def _path(segment: _Segment, source: str, eop: EarthOrientation | None) -> Polyn
     where = f'"{source}", segment of line {segment.line}'
     keys = segment.keys
     if keys.get("CENTER_NAME", "EARTH").upper() != "EARTH":
-        raise InputError(f"{where}: CENTER_NAME is {keys['CENTER_NAME']}; only orbits about the Earth are known.")
+        raise InputError(f"{where}: CENTER_NAME is {shown(keys['CENTER_NAME'])}; only orbits about the Earth are known.")
     system = keys.get("TIME_SYSTEM", "UTC")
     times = utc_from(_epochs(segment, source), system, where)
     _refuse_disorder(times, segment, source)
@@ -126,14 +127,25 @@ def _states(segment: _Segment, source: str) -> tuple[np.ndarray, np.ndarray]:
     try:
         states = np.array([[float(word) for word in words[1:7]] for _, words in segment.rows])
     except ValueError as error:
-        raise InputError(f'"{source}", segment of line {segment.line}: {error}.') from None
-    radius = np.linalg.norm(states[:, :3], axis=1)
-    if not np.isfinite(states).all() or not (1e3 < radius.min() and radius.max() < 1e7):
-        raise InputError(
-            f'"{source}", segment of line {segment.line}: distances run from {radius.min():.6g} to {radius.max():.6g} km from '
-            "the Earth's centre. An OEM states kilometres: is it written in metres?"
-        )
+        raise InputError(f'"{source}", segment of line {segment.line}: {shown(str(error), 80)}.') from None
+    _refuse_other_units(states, f'"{source}", segment of line {segment.line}')
     return states[:, :3] * 1000.0, states[:, 3:] * 1000.0
+
+
+def _refuse_other_units(states: np.ndarray, where: str) -> None:
+    """Kilometres and kilometres a second, or InputError."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        radius, speed = (np.linalg.norm(part, axis=1) for part in (states[:, :3], states[:, 3:]))
+    if not (radius.min() > 1e3 and radius.max() < 1e7):
+        raise InputError(
+            f"{where}: distances run from {radius.min():.6g} to {radius.max():.6g} km from the Earth's centre. "
+            "An OEM states kilometres: is it written in metres?"
+        )
+    if not speed.max() < SPEED_MAX_KM_S:
+        raise InputError(
+            f"{where}: speeds run to {speed.max():.6g} km/s; near the Earth they stay below {SPEED_MAX_KM_S:g}. "
+            "An OEM states km/s: is it written in m/s?"
+        )
 
 
 def to_gcrs(position, velocity, times, frame: str, where: str, eop: EarthOrientation | None = None):
@@ -152,7 +164,7 @@ def to_gcrs(position, velocity, times, frame: str, where: str, eop: EarthOrienta
     elif INERTIAL.get(name) == "teme":
         turn = dcm_it(times)
     else:
-        raise InputError(f'{where}: REF_FRAME is "{frame}"; known: {", ".join(INERTIAL)}, ITRF (any year), WGS84.')
+        raise InputError(f'{where}: REF_FRAME is "{shown(frame)}"; known: {", ".join(INERTIAL)}, ITRF (any year), WGS84.')
     return np.einsum("nij,nj->ni", turn, position), np.einsum("nij,nj->ni", turn, velocity)
 
 
@@ -165,8 +177,8 @@ def _interpolation(keys: dict[str, str], where: str) -> tuple[str, int]:
     """Method and degree as stated, or Hermite of degree 7."""
     method = keys.get("INTERPOLATION", "HERMITE").upper()
     if method not in METHODS:
-        raise InputError(f"{where}: INTERPOLATION is {method}; known: {', '.join(METHODS)}.")
+        raise InputError(f"{where}: INTERPOLATION is {shown(method)}; known: {', '.join(METHODS)}.")
     stated = keys.get("INTERPOLATION_DEGREE", "1" if method == "LINEAR" else str(DEFAULT_DEGREE))
     if not (stated.isascii() and stated.isdigit() and 1 <= int(stated) <= DEGREE_MAX):
-        raise InputError(f'{where}: INTERPOLATION_DEGREE is "{stated:.20}"; expected 1 to {DEGREE_MAX}.')
+        raise InputError(f'{where}: INTERPOLATION_DEGREE is "{shown(stated)}"; expected 1 to {DEGREE_MAX}.')
     return ("LAGRANGE", 1) if method == "LINEAR" else (method, int(stated))

@@ -14,7 +14,7 @@ import json
 import re
 from collections.abc import Iterator
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 from fieldline.orbit.ccsds import key_value, parse_epoch
 from fieldline.orbit.element_set import SGP4_XP, ElementSet
 
@@ -36,7 +36,7 @@ def parse_omm_json(text: str, source: str) -> list[ElementSet]:
     try:
         content = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(f'"{source}" begins like JSON and is not: {error}. Was the file cut?') from None
+        raise InputError(f'"{source}" begins like JSON and is not: {shown(str(error), 80)}. Was the file cut?') from None
     records = content if isinstance(content, list) else [content]
     if not records or not all(isinstance(record, dict) for record in records):
         raise InputError(f'"{source}" is JSON, but no OMM object or array of them; expected keys as EPOCH and MEAN_MOTION.')
@@ -52,7 +52,7 @@ def parse_omm_xml(text: str, source: str) -> list[ElementSet]:
     try:
         root = ElementTree.fromstring(text)
     except (ElementTree.ParseError, ValueError) as error:
-        raise InputError(f'"{source}" begins like XML and is not: {error}. Was the file cut?') from None
+        raise InputError(f'"{source}" begins like XML and is not: {shown(str(error), 80)}. Was the file cut?') from None
     sets = []
     for message in (element for element in root.iter() if _plain(element.tag) == "omm"):
         fields = {_plain(leaf.tag): (leaf.text or "") for leaf in message.iter() if not len(leaf)}
@@ -79,7 +79,7 @@ def parse_omm_csv(text: str, source: str) -> list[ElementSet]:
     try:
         rows = list(csv.DictReader(io.StringIO(text), strict=True))
     except csv.Error as error:
-        raise InputError(f'"{source}" is no whole table: {error}.') from None
+        raise InputError(f'"{source}" is no whole table: {shown(str(error), 80)}.') from None
     sets = [_element_set(row, f'"{source}" row {k}') for k, row in enumerate(rows, start=1)]
     return sets or _refuse_empty(source, "a header of OMM keys without a row")
 
@@ -92,7 +92,7 @@ def _element_set(fields: dict, where: str) -> ElementSet:
     values |= {name: _number(fields, key, where) for key, name in OPTIONAL.items() if key in fields}
     number = _number(fields, "NORAD_CAT_ID", where) if "NORAD_CAT_ID" in fields else 0.0
     if not 0 <= number < 1e10 or number != int(number):
-        raise InputError(f'{where}: NORAD_CAT_ID is "{fields["NORAD_CAT_ID"]}", not a catalogue number.')
+        raise InputError(f'{where}: NORAD_CAT_ID is "{shown(fields["NORAD_CAT_ID"])}", not a catalogue number.')
     if "EPOCH" not in fields:
         raise InputError(f"{where}: EPOCH is missing.")
     epoch = parse_epoch(fields["EPOCH"], f"{where}: EPOCH")
@@ -115,7 +115,7 @@ def _refuse_other_theories(fields: dict[str, str], where: str) -> None:
     """Only what SGP4 can carry passes."""
     for key, allowed in MUST_BE.items():
         if key in fields and fields[key].upper() not in allowed:
-            raise InputError(f"{where}: {key} is {fields[key]}; SGP4 elements have {' or '.join(sorted(allowed))}.")
+            raise InputError(f"{where}: {key} is {shown(fields[key])}; SGP4 elements have {' or '.join(sorted(allowed))}.")
     if fields.get("EPHEMERIS_TYPE") == SGP4_XP:
         raise InputError(f"{where}: EPHEMERIS_TYPE 4 is SGP4-XP, which SGP4 cannot carry; get the plain elements (type 0).")
 
@@ -128,7 +128,7 @@ def _number(fields: dict[str, str], key: str, where: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise InputError(f'{where}: {key} reads "{fields[key]:.40}", which is no number.') from None
+        raise InputError(f'{where}: {key} reads "{shown(fields[key])}", which is no number.') from None
 
 
 def _plain(tag) -> str:

@@ -103,7 +103,8 @@ def _usable(times: np.ndarray, position_e: np.ndarray) -> tuple[np.ndarray, np.n
     late = np.flatnonzero(np.diff(times) <= _ns(0.0))
     if late.size:
         raise InputError(f"the position at {iso_utc(times[late[0] + 1])} is not after the one before it; sort the times first.")
-    radius = np.linalg.norm(position_e, axis=1)
+    with np.errstate(over="ignore"):
+        radius = np.linalg.norm(position_e, axis=1)
     if radius.min() < RADIUS_M[0] or radius.max() > RADIUS_M[1]:
         bad = radius.min() if radius.min() < RADIUS_M[0] else radius.max()
         guess = " Are the columns in km? Multiply by 1000." if 6.3e3 < np.median(radius) < 1e6 else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 from fieldline.files import read_text
 from fieldline.frames.earth_orientation import EarthOrientation
 from fieldline.orbit.element_orbit import ElementOrbit
@@ -59,13 +59,13 @@ def orbit_kind(text: str, source: str) -> str:
     if message:
         if message[1] in ("OMM", "OEM"):
             return "OEM" if message[1] == "OEM" else "OMM KVN"
-        raise InputError(f'"{source}" is a CCSDS {message[1]}. {EXPECTED}')
+        raise InputError(f'"{source}" is a CCSDS {shown(message[1])}. {EXPECTED}')
     lines = body.splitlines()
     if any(is_element_line(line.strip().replace("\t", " ")) for line in lines):
         return "TLE"
     if "," in lines[0] and {"EPOCH", "MEAN_MOTION"} <= {word.strip().upper() for word in lines[0].split(",")}:
         return "OMM CSV"
-    raise InputError(f'"{source}" holds no orbit: its first line is "{_quotable(lines[0])}". {EXPECTED}{_guess(lines)}')
+    raise InputError(f'"{source}" holds no orbit: its first line is "{shown(lines[0], 60)}". {EXPECTED}{_guess(lines)}')
 
 
 def _xml_kind(opening: str, source: str) -> str:
@@ -86,11 +86,6 @@ def _guess(lines: list[str]) -> str:
     if "," in lines[0] or ";" in lines[0]:
         return " It looks like a table: were telemetry and orbit given in each other's place?"
     return ""
-
-
-def _quotable(line: str) -> str:
-    """The beginning of a line, safe to print."""
-    return "".join(c if c.isprintable() else "?" for c in line[:60])
 
 
 def _element_orbit(kind: str, sets: list[ElementSet], source: str, norad_id: int | None, eop) -> ElementOrbit:

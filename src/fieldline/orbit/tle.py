@@ -14,7 +14,7 @@ import re
 
 import numpy as np
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 from fieldline.orbit.element_set import SGP4_XP, ElementSet
 
 LINE_LENGTH = 69
@@ -40,7 +40,7 @@ def parse_tle(text: str, source: str) -> list[ElementSet]:
             continue
         if not is_element_line(line):
             if first is not None:
-                raise InputError(f'{where}: expected line 2 of the set begun in line {first[0]}, got "{line:.30}".')
+                raise InputError(f'{where}: expected line 2 of the set begun in line {first[0]}, got "{shown(line)}".')
             name = _name(line, where)
         elif line[0] == "1":
             if first is not None:
@@ -59,7 +59,7 @@ def parse_tle(text: str, source: str) -> list[ElementSet]:
 def _name(line: str, where: str) -> str:
     """The satellite's name from a title line, with or without the leading "0 "."""
     if len(line) > SHORTEST_ELEMENT_LINE:
-        raise InputError(f'{where} is neither a name nor an element line: "{line:.40}...". Expected "1 " or "2 " first.')
+        raise InputError(f'{where} is neither a name nor an element line: "{shown(line)}...". Expected "1 " or "2 " first.')
     return line[2:].strip() if line.startswith("0 ") else line
 
 
@@ -74,11 +74,13 @@ def _checked(line: str, where: str) -> str:
         )
     for column in BLANK_COLUMNS[line[0]]:
         if line[column - 1] != " ":
-            raise InputError(f'{where}: column {column} must be blank, it holds "{line[column - 1]}". Have blanks been lost?')
+            raise InputError(
+                f'{where}: column {column} must be blank, it holds "{shown(line[column - 1])}". Have blanks been lost?'
+            )
     computed, stated = checksum(line), line[-1]
     if str(computed) != stated:
         raise InputError(
-            f'{where}: the checksum is "{stated}" and the digits before it sum to {computed}. A character was changed or '
+            f'{where}: the checksum is "{shown(stated)}" and the digits before it sum to {computed}. A character was changed or '
             "blanks were lost at the line's end; fetch the set again."
         )
     return line
@@ -124,7 +126,9 @@ def _catalogue_number(line: str, where: str) -> int:
         return int(text)
     if len(text) == 5 and text[0] in ALPHA5 and text[1:].isdigit():
         return (ALPHA5.index(text[0]) + 10) * 10000 + int(text[1:])
-    raise InputError(f'{where}: columns 3 to 7 hold "{line[2:7]}", not a catalogue number (digits, or a letter and four digits).')
+    raise InputError(
+        f'{where}: columns 3 to 7 hold "{shown(line[2:7])}", not a catalogue number (digits, or a letter and four digits).'
+    )
 
 
 def _epoch(text: str, where: str) -> np.datetime64:
@@ -132,7 +136,9 @@ def _epoch(text: str, where: str) -> np.datetime64:
     match = re.fullmatch(r"([ \d]\d)([ \d]{2}\d)\.(\d{8})", text)
     day = int(match[2]) if match else 0
     if not match or not 1 <= day <= 366:
-        raise InputError(f'{where}: the epoch "{text}" is no two-digit year and day of the year (1 to 366) with eight decimals.')
+        raise InputError(
+            f'{where}: the epoch "{shown(text)}" is no two-digit year and day of the year (1 to 366) with eight decimals.'
+        )
     year = int(match[1]) + (1900 if int(match[1]) >= 57 else 2000)
     start = np.datetime64(f"{year:04d}-01-01", "ns")
     return start + np.timedelta64((day - 1) * 86_400_000_000_000 + int(match[3]) * 864_000, "ns")
@@ -141,7 +147,7 @@ def _epoch(text: str, where: str) -> np.datetime64:
 def _decimal(text: str, where: str, what: str) -> float:
     """A plain number in fixed columns."""
     if not DECIMAL.fullmatch(text.strip()):
-        raise InputError(f'{where}: {what} reads "{text}", which is no number.')
+        raise InputError(f'{where}: {what} reads "{shown(text)}", which is no number.')
     return float(text)
 
 
@@ -149,5 +155,5 @@ def _exponent(text: str, where: str, what: str) -> float:
     """A number as " 73805-3": a decimal point before the digits, then a power of ten."""
     match = EXPONENT.fullmatch(text.strip().replace(" ", "+"))
     if not match:
-        raise InputError(f'{where}: {what} reads "{text}"; expected a sign, five digits and an exponent, as " 73805-3".')
+        raise InputError(f'{where}: {what} reads "{shown(text)}"; expected a sign, five digits and an exponent, as " 73805-3".')
     return float(f"{match[1]}.{match[2]}e{match[3]}{match[4]}")
