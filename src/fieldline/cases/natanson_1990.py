@@ -21,6 +21,7 @@ from fieldline.errors import InputError
 from fieldline.estimation.natanson.choice import ROBUST_REACH, constant_rate_loss, least_loss, take
 from fieldline.estimation.natanson.constant_rate import WORDS, Roots, Status, constant_rate_roots
 from fieldline.estimation.natanson.derivatives import Derivatives, finite_differences, local_polynomial, smoothing_spline
+from fieldline.estimation.natanson.limits import three_sample_verdict
 from fieldline.estimation.natanson.window_fit import fit_window
 from fieldline.frames.attitude import rotation_error_b
 
@@ -99,6 +100,7 @@ def run(
     if fit_s > 0.0:
         _add_fits(dataset, arc, roots, fit_s, max(quantisation_tesla / np.sqrt(12.0), noise_tesla, 1e-12))
     dataset.attrs.update(_provenance(settings, roots))
+    dataset.attrs["limits"] = _limits(arc, roots, step_s, np.hypot(quantisation_tesla / np.sqrt(12.0), noise_tesla), points)
     return dataset
 
 
@@ -204,15 +206,23 @@ def _add_fits(dataset, arc: Arc, roots: Roots, fit_s: float, noise_tesla: float)
 
 def _provenance(settings: dict, roots: Roots) -> dict:
     """Attributes: source, settings, and how many samples had no solution and why."""
-    plain = {k: list(v) if isinstance(v, tuple) else v for k, v in settings.items()}
     import json
 
+    plain = {k: list(v) if isinstance(v, tuple) else v for k, v in settings.items()}
     return {
         "title": "Natanson, McLaughlin and Nicklas (1990), synthetic arc like ERBS",
         "source": "NASA CP-3102 (1990), N91-17; circular orbit, 600 km, 57 deg, 1989-01-15",
         "settings_json": json.dumps(plain),
         "solved": "; ".join(roots.words()),
     }
+
+
+def _limits(arc: Arc, roots: Roots, step_s: float, noise_tesla: float, points: int) -> str:
+    """What differences at this step, noise and rate can tell, in words."""
+    magnitude = float(np.median(np.linalg.norm(arc.field_i, axis=1)))
+    spin = float(np.median(np.linalg.norm(arc.omega_b, axis=1)))
+    turning = float(np.nanmedian(roots.circle.lambda_r / roots.circle.f_s))
+    return three_sample_verdict(step_s, noise_tesla, magnitude, spin, turning, points)[1]
 
 
 def _about(kind: str) -> dict:

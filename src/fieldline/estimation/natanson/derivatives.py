@@ -101,8 +101,9 @@ def local_polynomial(seconds, field, *, window_s: float, order: int = 4) -> Deri
 def smoothing_spline(seconds, field, *, cutoff_rad_s: float) -> Derivatives:
     """Spline of degree five that minimises sum |y - s|^2 + mu int |s'''|^2 dt, at every sample.
 
-    Away from the ends it is the low-pass H(w) = 1 / (1 + (w/w_c)^6) with w_c = cutoff_rad_s = (interval * mu)^(-1/6), and
-    within about 3/w_c of an end it rests on half the data: those rows are NaN.
+    Away from the ends it is the low-pass H(w) = 1 / (1 + (w/w_c)^6) with w_c = cutoff_rad_s = (interval * mu)^(-1/6).
+    Within 3/w_c of an end it rests on half the data: those rows are NaN. The bias of the ends fades as exp(-w_c t/2), so that
+    the expected error of `spline_error` holds from about 8/w_c inwards.
     """
     from scipy.interpolate import BSpline
     from scipy.sparse.linalg import splu
