@@ -85,6 +85,20 @@ def test_names_line_ends_marks_tabs(tmp_path, lines, end, encoding):
     assert (orbit.name, orbit.kind, orbit.norad_id) == ("SUCHAI-3", "TLE", 52191)
 
 
+def test_blocks_leave_no_mark(tmp_path, monkeypatch):
+    orbit = read_orbit(written(tmp_path, *FIRST, *SECOND))
+    times = np.datetime64("2023-08-24", "ns") + np.arange(1000) * np.timedelta64(1111, "s")  # nearly 13 days, both sets
+    whole = *orbit.state_i(times), orbit.position_e(times)
+    monkeypatch.setattr("fieldline.orbit.orbit.BLOCK", 77)
+    for mine, theirs in zip((*orbit.state_i(times), orbit.position_e(times)), whole, strict=True):
+        assert np.abs(mine - theirs).max() < 1e-6
+    assert orbit.covers(times).all()
+
+
+def test_a_name_may_begin_with_a_bracket(tmp_path):
+    assert read_orbit(written(tmp_path, "[DEB] SUCHAI-3", *FIRST)).name == "[DEB] SUCHAI-3"
+
+
 def test_a_name_may_begin_with_a_one(tmp_path):
     assert read_orbit(written(tmp_path, "1 KUNS-PF", *FIRST)).name == "1 KUNS-PF"
 

@@ -62,6 +62,10 @@ class Orbit(ABC):
             "warnings": self._warnings(times),
         }
 
+    def covers(self, time_utc) -> np.ndarray:
+        """(...) whether each time lies within what the orbit serves; elements serve all, however badly."""
+        return np.ones(np.shape(time_utc), dtype=bool)
+
     @abstractmethod
     def check(self, time_utc, max_age_days: float = MAX_AGE_DAYS) -> list[str]:
         """Warnings about these times; raises InputError when the orbit must not be used for them."""

@@ -51,8 +51,6 @@ def orbit_kind(text: str, source: str) -> str:
     """Which of the known formats a text is in; InputError with what it looks like instead."""
     body = text.lstrip()
     opening = body[:4096].lower()
-    if body.startswith(("{", "[")):
-        return "OMM JSON"
     if body.startswith("<"):
         return _xml_kind(opening, source)
     message = re.search(r"^\s*CCSDS_(\w+)_VERS\s*=", body, re.MULTILINE)
@@ -63,6 +61,8 @@ def orbit_kind(text: str, source: str) -> str:
     lines = body.splitlines()
     if any(is_element_line(line.strip().replace("\t", " ")) for line in lines):
         return "TLE"
+    if body.startswith(("{", "[")):
+        return "OMM JSON"
     if "," in lines[0] and {"EPOCH", "MEAN_MOTION"} <= {word.strip().upper() for word in lines[0].split(",")}:
         return "OMM CSV"
     raise InputError(f'"{source}" holds no orbit: its first line is "{shown(lines[0], 60)}". {EXPECTED}{_guess(lines)}')
