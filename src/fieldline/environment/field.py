@@ -3,8 +3,8 @@
     B(r, t) = B_k(r) + (t - t_k) / (t_k+1 - t_k) (B_k+1(r) - B_k(r))                                       (1)
 
 The coefficients are interpolated between the model's epochs, which is (1) exactly since B is linear in them: once for a
-call at one time, once per sample for a series (a seventh of the cost of a synthesis at degree 13, and cheaper than the
-second synthesis that (1) read literally would take).
+call at one time, once per sample for a series (a third of the cost of a synthesis at degree 13, where the second
+synthesis that (1) read literally would take costs another whole).
 
 Only the field of the Earth's core and large-scale crust: outer currents add 10 to 50 nT in quiet and several hundred in
 storms, the crust's small scales some 10 nT in low orbit.

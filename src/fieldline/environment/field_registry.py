@@ -12,6 +12,7 @@ import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import lru_cache
+from numbers import Real
 
 import numpy as np
 
@@ -47,19 +48,20 @@ def field_model(
     """
     options = {"until_year": until_year, "moment_e": moment_e, "position_e": position_e}
     given = {name: value for name, value in options.items() if value is not None}
-    if isinstance(model, FieldModel):
-        if given:
-            raise InputError(f"{', '.join(given)} cannot be given with a finished FieldModel ({model.name}); give its name.")
-        return model.truncated(degree, order)
-    if not given and isinstance(model, str) and isinstance(degree, int | None) and isinstance(order, int | None):
-        return _standard(model, degree, order)
-    return _made(model, given).truncated(degree, order)
+    if given and isinstance(model, FieldModel):
+        raise InputError(f"{', '.join(given)} cannot be given with a finished FieldModel ({model.name}); give its name.")
+    kept = isinstance(model, str | FieldModel) and all(isinstance(k, int | np.integer | None) for k in (degree, order))
+    if kept and not given:
+        return _kept(model, degree, order)
+    whole = model if isinstance(model, FieldModel) else _made(model, given)
+    return whole.truncated(degree, order)
 
 
 @lru_cache(maxsize=32, typed=True)
-def _standard(name: str, degree: int | None, order: int | None) -> FieldModel:
+def _kept(model: str | FieldModel, degree: int | None, order: int | None) -> FieldModel:
     """A model without further options; kept, since its tables cost milliseconds."""
-    return _made(name, {}).truncated(degree, order)
+    whole = model if isinstance(model, FieldModel) else _made(model, {})
+    return whole.truncated(degree, order)
 
 
 def _made(name: str, given: dict) -> FieldModel:
@@ -153,7 +155,7 @@ def _carried_on(model: FieldModel, until_year: float | None) -> FieldModel:
     if until_year is None or model.coefficients is None:
         return model
     first, last = model.years
-    if not isinstance(until_year, int | float) or not last <= until_year <= last + 20.0:
+    if not isinstance(until_year, Real) or not last <= until_year <= last + 20.0:
         raise InputError(f"until_year of {model.name} must lie in {last:g} to {last + 20:g}; got {until_year!r}.")
     if until_year == last:
         return model
@@ -167,7 +169,7 @@ def _vectors(name: str, value, unit: str) -> np.ndarray:
     try:
         vectors = np.array(value, dtype=float, ndmin=2)
     except (ValueError, TypeError):
-        vectors = np.empty(0)
+        vectors = np.empty((0, 0))
     if vectors.ndim != 2 or vectors.shape[1] != 3 or not np.isfinite(vectors).all():
         raise InputError(f"{name} must be finite vectors (D, 3) [{unit}]; got {value!r:.80}.")
     return vectors

@@ -98,6 +98,7 @@ def test_no_outer_product():
         ("IGRF-14", {"moment_e": (0, 0, 1e22)}, "has no option moment_e"),
         ("IGRF-14", {"until_year": 2090.0}, "until_year"),
         ("IGRF-14", {"until_year": "2032"}, "until_year"),
+        (field_model("IGRF-14"), {"degree": [8]}, "whole number"),
         ("centred-dipole", {}, "needs moment_e"),
         ("centred-dipole", {"moment_e": (1e22, 0.0)}, "moment_e must be finite vectors"),
         ("centred-dipole", {"moment_e": np.ones((2, 3))}, "one vector"),
@@ -120,6 +121,14 @@ def test_a_finished_model_takes_no_options_but_degree():
         field_model(model, degree=11)
     with pytest.raises(InputError, match="until_year cannot be given"):
         field_model(model, until_year=2031.0)
+
+
+def test_models_are_made_once():
+    assert field_model("IGRF-14") is field_model("IGRF-14")
+    model = field_model("WMM2025")
+    assert field_model(model) is model
+    assert field_model(model, degree=6) is field_model(model, degree=6)
+    assert field_model(model, degree=np.int64(6)).degree == 6
 
 
 @pytest.mark.parametrize("name", ["igrf14", "IGRF 14", "Igrf-14"])
