@@ -3,12 +3,17 @@
 A fit of magnitudes leaves residuals that hang together over minutes (what the model does not have: heating, currents), so
 that n samples are worth far fewer. The covariance is therefore the sandwich over contiguous blocks,
 
-    cov = H^-1 (S + P) H^-1,   H = A + P,   S = sum_blocks (sum_block psi J) (sum_block psi J)^T      (1)
+    cov = H^-1 (S + P) H^-1,   H = k A + P,   S = sum_blocks (sum_block psi J) (sum_block psi J)^T      (1)
 
-A: Gauss-Newton information of the data, P: information of the prior, psi J: score of a sample. The blocks are longer than
+A: Gauss-Newton information of the data with the robust weights, k: mean slope of the robust influence over mean weight, P:
+information of the prior, psi J: score of a sample. The blocks are longer than
 the residuals' memory (twice the last lag with |autocorrelation| over 0.1, at most a twelfth of the arc). S is never
 taken smaller, in any direction, than with blocks of one sample, and is enlarged by b / (b - 1) for b blocks, since the fit
 makes the scores' sum vanish.
+
+The field model's own magnitude is not true either: what it lacks (crust, magnetosphere, ionosphere: about 50 nT in low orbit
+on a quiet day) hangs together over ten minutes, too long to be seen in the residuals of one arc. S therefore receives the
+scores that such an error would make, block of ten minutes by block.
 
 Terms that the chosen candidate leaves out (the matrix of a bias-only fit) are not known to be absent: they enter (1) with
 a prior whose spread is what the fitted candidate's own residuals suggest, thrice over (`omitted_std`).
@@ -21,13 +26,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from fieldline.estimation.calibration.fit import Fit, Prior, normal_equations, prior_of, weights_of, with_prior
+from fieldline.estimation.calibration.fit import DEGREES, Fit, Prior, normal_equations, prior_of, weights_of, with_prior
 from fieldline.estimation.calibration.model import Samples, Terms, gain_sums, linearised
 
 MEMORY_LEVEL = 0.1
 LONGEST_SERIES = 131072
 BLOCKS_AT_LEAST = 12
 OMITTED_FACTOR = 3.0
+FIELD_MODEL_STD_TESLA = 50e-9  # of the magnitude; Olsen & Stolle (2012), Annu. Rev. Earth Planet. Sci. 40, quiet-time sizes
+FIELD_MODEL_MEMORY_S = 600.0  # some 4000 km of ground track
 
 
 def autocorrelation(series: np.ndarray) -> np.ndarray:
@@ -53,7 +60,7 @@ def memory_samples(series: np.ndarray) -> int:
 
 
 def effective_samples(series: np.ndarray) -> float:
-    """n / (1 + 2 sum rho), the sum up to the first lag at which the autocorrelation is lost in noise."""
+    """How many independent samples they are worth: n / (1 + 2 sum rho), up to the first lag where rho is lost in noise."""
     lags = autocorrelation(series)
     lost = np.flatnonzero(lags < 2.0 / np.sqrt(min(len(series), LONGEST_SERIES)))
     stop = lost[0] if len(lost) else len(lags)
@@ -65,15 +72,30 @@ def block_length(fit: Fit) -> int:
     return max(1, min(2 * memory_samples(clipped(fit)), len(fit.residual) // BLOCKS_AT_LEAST))
 
 
-def score_spread(terms: Terms, theta: np.ndarray, samples: Samples, scale: float, length: int) -> np.ndarray:
-    """S of (1) for blocks of `length` samples."""
+def influence_slope(fit: Fit) -> float:
+    """Mean of d psi / d r over the mean weight: how much less than its weights a robust fit resists being pulled."""
+    x2 = (fit.residual / fit.scale) ** 2
+    slope = (DEGREES + 1.0) * (DEGREES - x2) / (DEGREES + x2) ** 2
+    return max(0.3, float(np.mean(slope) / np.mean(weights_of(fit.residual, fit.scale))))
+
+
+def score_spread(
+    terms: Terms, theta: np.ndarray, samples: Samples, scale: float, length: int, error: float | None = None
+) -> np.ndarray:
+    """S of (1) for blocks of `length` samples: of the residuals, or of a constant `error` in their place."""
     spread = np.zeros((terms.size, terms.size))
     for _, part in samples.chunks():
-        r, where, jacobian = linearised(terms, theta, part)
-        scores = jacobian * (weights_of(r, scale) * r / scale**2)[:, None]
+        d, where, jacobian = linearised(terms, theta, part)
+        scores = jacobian * (weights_of(d, scale) * (d if error is None else error) / scale**2)[:, None]
         sums = np.add.reduceat(scores, np.arange(0, len(part), length), axis=0)
         spread[np.ix_(where, where)] += sums.T @ sums
     return spread
+
+
+def field_model_block(samples: Samples) -> int:
+    """Samples within the field model's memory."""
+    step = float(np.median(np.diff(samples.seconds)[np.diff(samples.flight) == 0]))
+    return max(1, round(FIELD_MODEL_MEMORY_S / step))
 
 
 def omitted_std(fit: Fit, samples: Samples) -> float:
@@ -100,10 +122,12 @@ def widened(fit: Fit, samples: Samples) -> tuple[Terms, np.ndarray, Prior]:
     return terms, theta, Prior(theta if fit.terms.matrix != "full" else prior.mean, information, gain_sums(terms, samples) / 1e-6)
 
 
-def covariance_of(fit: Fit, samples: Samples) -> tuple[Terms, np.ndarray, np.ndarray]:
-    """The widened terms and parameters, and their covariance (1)."""
+def covariance_of(fit: Fit, samples: Samples, field_model_std: float) -> tuple[Terms, np.ndarray, np.ndarray]:
+    """The widened terms and parameters, and their covariance (1); `field_model_std` in units of the samples."""
     terms, theta, prior = widened(fit, samples)
+    samples = samples.lengthened(fit.scale)
     information, _ = normal_equations(terms, theta, samples, fit.scale)
+    information *= influence_slope(fit)
     length = block_length(fit)
     blocks = len(samples) / length
     spread = score_spread(terms, theta, samples, fit.scale, length) * blocks / (blocks - 1.0)
@@ -116,4 +140,5 @@ def covariance_of(fit: Fit, samples: Samples) -> tuple[Terms, np.ndarray, np.nda
     half = root @ vectors * np.sqrt(np.maximum(values, 1.0))
     inverse = np.linalg.inv(with_prior(information, prior))
     left = inverse @ half
-    return terms, theta, left @ left.T + inverse @ np.diag(prior.information) @ inverse
+    modelled = score_spread(terms, theta, samples, fit.scale, field_model_block(samples), field_model_std)
+    return terms, theta, left @ left.T + inverse @ (np.diag(prior.information) + modelled) @ inverse

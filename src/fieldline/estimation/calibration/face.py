@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fieldline.errors import InputError, NoEstimateError, nearest
-from fieldline.estimation.calibration.covariance import clipped, covariance_of, effective_samples
+from fieldline.estimation.calibration.covariance import FIELD_MODEL_STD_TESLA, clipped, covariance_of, effective_samples
 from fieldline.estimation.calibration.fit import OUTLIER_SIGMAS, Fit, fit, prior_of
 from fieldline.estimation.calibration.ladder import BASIC, best_fit, flight_splines
-from fieldline.estimation.calibration.model import Samples, Terms
+from fieldline.estimation.calibration.model import Samples, Terms, magnitudes
 from fieldline.estimation.calibration.record import Calibration, only_flight
 from fieldline.estimation.calibration.selection import Candidate, choose
 from fieldline.estimation.calibration.spline import KNOT_SPACING_S, UniformSpline
@@ -67,6 +67,7 @@ def calibrate_magnitude(
     solar_current=None,
     epoch_utc=None,
     knot_spacing_s: float = KNOT_SPACING_S,
+    field_model_std_tesla: float = FIELD_MODEL_STD_TESLA,
 ) -> Calibration:
     """Bias, matrix and, where the data support them, a slow gain, drift and couplings: from magnitudes, without attitude.
 
@@ -81,6 +82,7 @@ def calibrate_magnitude(
     temperature_k (n,) [K], dipole_command_b (n, 3) [A m^2], solar_current (n,) [A]: columns that terms may use; only
         what is given is tried.
     epoch_utc : the time of seconds = 0, kept for use on other files.      knot_spacing_s : [s] of the slow gain.
+    field_model_std_tesla : [T] slow error of `magnitude_tesla` itself, part of the covariance.
 
     Returns
     -------
@@ -93,11 +95,15 @@ def calibrate_magnitude(
         seconds=seconds, field_s=field_s, magnitude_tesla=magnitude_tesla, usable=usable, temperature_k=temperature_k,
         dipole_command_b=dipole_command_b, solar_current=solar_current, epoch_utc=epoch_utc,
     )  # fmt: skip
-    return calibrate_flights([flight], model=model, knot_spacing_s=knot_spacing_s)[0]
+    return calibrate_flights([flight], model=model, knot_spacing_s=knot_spacing_s, field_model_std_tesla=field_model_std_tesla)[0]
 
 
 def calibrate_flights(
-    flights: list[Flight] | tuple[Flight, ...], *, model: str = "auto", knot_spacing_s: float = KNOT_SPACING_S
+    flights: list[Flight] | tuple[Flight, ...],
+    *,
+    model: str = "auto",
+    knot_spacing_s: float = KNOT_SPACING_S,
+    field_model_std_tesla: float = FIELD_MODEL_STD_TESLA,
 ) -> tuple[Calibration, ...]:
     """One matrix and one bias for all flights of a satellite, and the gain's level and course for each.
 
@@ -105,6 +111,7 @@ def calibrate_flights(
     `calibrate_magnitude`.
     """
     samples, units = gather(flights)
+    unsure = field_model_std_tesla / units.field_tesla
     splines = flight_splines(samples, knot_spacing_s)
     wanted = None if model == "auto" else terms_named(model, samples, splines, len(flights))
     if wanted is not None and wanted.size == 0:
@@ -113,11 +120,11 @@ def calibrate_flights(
         refuse_unfit(samples)
         thin = thinned(samples)
         if wanted is None:
-            first, table = choose(thin, splines, len(flights), units.field_tesla)
+            first, table = choose(thin, splines, len(flights), units.field_tesla, unsure)
         else:
             first, table = climb(wanted, thin), []
         best = fit(first.terms, first.theta, samples, prior_of(first.terms, samples))
-    return tuple(_record(best, samples, units, flights[k], k, table, model) for k in range(len(flights)))
+    return tuple(_record(best, samples, units, flights[k], k, table, model, unsure) for k in range(len(flights)))
 
 
 def climb(wanted: Terms, samples: Samples) -> Fit:
@@ -247,17 +254,18 @@ def physical_units(terms: Terms, units: Units) -> np.ndarray:
 
 
 def _record(
-    best: Fit, samples: Samples, units: Units, flight: Flight, number: int, table: list[Candidate], model: str
+    best: Fit, samples: Samples, units: Units, flight: Flight, number: int, table: list[Candidate], model: str, unsure: float
 ) -> Calibration:
     """One flight's Calibration from the common fit."""
-    terms, theta, covariance = covariance_of(best, samples)
+    terms, theta, covariance = covariance_of(best, samples, unsure)
     if model == "none":
         covariance = np.zeros_like(covariance)  # whoever asks for no calibration vouches for the sensor
     size = physical_units(terms, units)
     own, where = only_flight(terms, number)
     inside = np.abs(best.residual) < OUTLIER_SIGMAS * best.scale
     mine = samples.flight == number
-    good = best.residual[inside & mine]
+    kept = samples.take(inside & mine)
+    good = magnitudes(best.terms, best.theta, kept) - kept.magnitude if len(kept) else np.empty(0)
     return Calibration(
         model=best.terms.name,
         terms=own,

@@ -1,10 +1,10 @@
 """The robust fit: Levenberg-Marquardt on Student's likelihood, by normal equations in bounded memory.
 
-    cost = sum_k (nu + 1)/2 log(1 + r_k^2 / (nu s^2)) + 1/2 sum_j ((theta_j - mu_j)/sigma_j)^2     (1)
-    weight of a sample = (nu + 1)/(nu + r^2/s^2)                                                   (2)
+    cost = sum_k (nu + 1)/2 log(1 + d_k^2 / (nu s^2)) + 1/2 sum_j ((theta_j - mu_j)/sigma_j)^2     (1)
+    weight of a sample = (nu + 1)/(nu + d^2/s^2)                                                   (2)
 
 with nu = 4: gross errors lose their pull, and on Gaussian noise 7 % of efficiency is paid. The scale s is the median of
-|r| times 1.4826, renewed between rounds. The priors (1) only stop directions that the data do not see from running away;
+|d| times 1.4826, renewed between rounds. The priors (1) only stop directions that the data do not see from running away;
 they are wide against what any sensor shows.
 """
 
@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fieldline.estimation.calibration.model import Samples, Terms, gain_sums, linearised, residuals
+from fieldline.estimation.calibration.model import Samples, Terms, distances, gain_sums, linearised
 
 DEGREES = 4.0
 GAIN_STD = 0.05  # a slow gain of more than a few per cent would be a broken sensor
-MATRIX_STD = 0.3
+MATRIX_STD = 0.15
 MEAN_GAIN_STD = 1e-6  # the mean gain belongs to D; this fixes it at 1
 SCALE_FLOOR = 1e-7  # of the field: a few pT, so that noise-free tests have a scale
 OUTLIER_SIGMAS = 6.0
@@ -47,9 +47,9 @@ class Fit:
 
 def prior_of(terms: Terms, samples: Samples) -> Prior:
     """Wide priors for every term that the candidate has."""
-    reach = np.abs(samples.field_s).max() + samples.magnitude.max()
+    reach = float(np.median(np.linalg.norm(samples.field_s, axis=1)) + np.median(samples.magnitude))
     stds = {
-        "bias": 3.0 * reach, "matrix": MATRIX_STD, "temperature": GAIN_STD, "drift": reach,
+        "bias": reach, "matrix": MATRIX_STD, "temperature": GAIN_STD, "drift": reach,
         "dipole": reach, "current": reach, "gain": GAIN_STD,
     }  # fmt: skip
     mean, information = np.zeros(terms.size), np.zeros(terms.size)
@@ -101,12 +101,14 @@ def with_prior(matrix: np.ndarray, prior: Prior) -> np.ndarray:
     return matrix + np.diag(prior.information) + np.outer(prior.gain_row, prior.gain_row)
 
 
-def fit(terms: Terms, theta: np.ndarray, samples: Samples, prior: Prior, *, rounds: int = 4, steps: int = 25) -> Fit:
+def fit(terms: Terms, theta: np.ndarray, samples: Samples, prior: Prior, *, rounds: int = 5, steps: int = 40) -> Fit:
     """Minimise (1) from `theta`, renewing the scale each round."""
-    residual = residuals(terms, theta, samples)
-    scale, converged = robust_scale(residual), terms.size == 0
+    scale, converged = robust_scale(distances(terms, theta, samples)), terms.size == 0
+    residual = distances(terms, theta, samples.lengthened(scale))
     for _ in range(rounds if terms.size else 0):
-        theta, residual, converged = _descend(terms, theta, residual, samples, prior, scale, steps)
+        expected = samples.lengthened(scale)
+        residual = distances(terms, theta, expected)
+        theta, residual, converged = _descend(terms, theta, residual, expected, prior, scale, steps)
         renewed = robust_scale(residual)
         settled = abs(np.log(renewed / scale)) < 1e-3
         scale = renewed
@@ -124,7 +126,7 @@ def _descend(
     for _ in range(steps):
         step = -np.linalg.solve(matrix + damping * np.diag(np.diag(matrix)), gradient)
         trial = theta + step
-        trial_residual = residuals(terms, trial, samples)
+        trial_residual = distances(terms, trial, samples)
         trial_cost = cost_of(prior, trial, trial_residual, scale)
         if trial_cost <= cost:
             promised = -float(gradient @ step)

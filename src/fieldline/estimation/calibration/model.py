@@ -2,17 +2,27 @@
 
     w       = gain_s(t) field_s - bias - drift (t - t_r) - C dipole - c current                    (1)
     field_b = gain_b(t) D w                                                                        (2)
-    residual = |field_b| - |B_ref|                                                                 (3)
+    r       = |field_b| - |B_ref| (1 + s^2 / |B_ref|^2)                                            (3)
+    d       = r / |D u|,   u = field_b / |field_b|                                                 (4)
 
 `gain_s` multiplies the whole reading (a supply or reference voltage, the sensitivity of the bridge: whatever the
 sensor sees, a magnet beside it included), `gain_b` only what is left without the bias (an offset of the electronics);
 one of them at most differs from 1. D is symmetric: |R D w| = |D w| for every rotation R, so that of the nine numbers of
 a general matrix only the six of its symmetric (polar) factor can be seen in magnitudes.
 
-With u = field_b / |field_b| the derivatives of (3) are
+The noise e of a reading enters r as u . D e, so that minimising r^2 would reward a D that shrinks the noise: along an axis
+that the field hardly takes, a huge bias behind a tiny D explains the magnitudes with less noise than the truth does. The
+distance d of the reading from the surface |field_b| = |B_ref|, whose noise does not depend on D, has no such reward. (3)
+carries the mean of the noise across the field, which lengthens every reading: s is the noise of one axis.
 
-    d/d bias = -gain_b D u        d/d D_ij = gain_b (u_i w_j + u_j w_i) / (1 + delta_ij)
-    d/d gain_s = gain_b u . D field_s        d/d gain_b = u . D w                                  (4)
+With g = gain_b, V = D u, n = |V| and the direction
+
+    a = (u - d (1 - u u^T) D V / (n |field_b|)) / n                                                (5)
+
+the derivatives of d are
+
+    d/d bias = -g D a        d/d gain_s = a . D field_s        d/d gain_b = a . D w
+    d/d D_ij = (M_ij + M_ji) / (1 + delta_ij),   M = g a w^T - d V u^T / n^2                       (6)
 
 Everything here is in units of a typical field (`Samples.unit_tesla`), of the arc, and of the largest command.
 Source: Alonso and Shuster, J. Astronaut. Sci. 50 (2002) 61 (bias) and 50 (2002) 477 (scale, non-orthogonality), for
@@ -22,8 +32,9 @@ Source: Alonso and Shuster, J. Astronaut. Sci. 50 (2002) 61 (bias) and 50 (2002)
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +42,8 @@ from fieldline.estimation.calibration.spline import UniformSpline
 
 CHUNK = 16384
 SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-AXES = "xyz"
+TINY = 1e-12
+LARGEST_NOISE = 0.1  # of the field: beyond, what is left is not noise
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +55,9 @@ class Samples:
     magnitude: np.ndarray
     flight: np.ndarray
     arc: np.ndarray  # time from the middle of the arc, in arc lengths
-    temperature: np.ndarray | None = None
-    dipole: np.ndarray | None = None
-    current: np.ndarray | None = None
+    temperature: Any = None  # (n,) or None
+    dipole: Any = None  # (n, 3) or None
+    current: Any = None  # (n,) or None
 
     def __len__(self) -> int:
         return len(self.seconds)
@@ -57,6 +69,11 @@ class Samples:
             self.seconds[which], self.field_s[which], self.magnitude[which], self.flight[which], self.arc[which],
             pick(self.temperature), pick(self.dipole), pick(self.current),
         )  # fmt: skip
+
+    def lengthened(self, noise: float) -> Samples:
+        """The same samples with the magnitudes that readings of this noise have in the mean, (3)."""
+        noise = min(noise, LARGEST_NOISE)
+        return replace(self, magnitude=self.magnitude + noise**2 / self.magnitude)
 
     def chunks(self) -> Iterator[tuple[slice, Samples]]:
         """Runs of at most CHUNK samples, each within one flight."""
@@ -105,6 +122,11 @@ class Terms:
         """Number of parameters."""
         return max((place.stop for place in self.layout.values()), default=0)
 
+    @property
+    def slow(self) -> bool:
+        """Whether a term changes with time as slowly as an orbit does."""
+        return self.gain != "none" or self.temperature or self.drift
+
     def gain_slice(self, flight: int) -> slice:
         """Place of one flight's spline coefficients."""
         start = self.layout["gain"].start + sum(spline.size for spline in self.splines[:flight])
@@ -120,7 +142,7 @@ class Terms:
         return part[0] * np.eye(3) if len(part) == 1 else symmetric(part)
 
     def bias_of(self, theta: np.ndarray) -> np.ndarray:
-        """bias (3,)."""
+        """Bias (3,)."""
         return self.part(theta, "bias", np.zeros(3))
 
 
@@ -156,31 +178,47 @@ def corrected(terms: Terms, theta: np.ndarray, samples: Samples) -> tuple[np.nda
     return (gain[:, None] * field_b if on_field else field_b), w, gain
 
 
-def residuals(terms: Terms, theta: np.ndarray, samples: Samples) -> np.ndarray:
-    """(n,) equation (3) over all samples, flight after flight."""
+def magnitudes(terms: Terms, theta: np.ndarray, samples: Samples) -> np.ndarray:
+    """(n,) |field_b|, flight after flight."""
+    out = np.empty(len(samples))
+    for piece, part in samples.chunks():
+        out[piece] = np.linalg.norm(corrected(terms, theta, part)[0], axis=1)
+    return out
+
+
+def distances(terms: Terms, theta: np.ndarray, samples: Samples) -> np.ndarray:
+    """(n,) equation (4) over all samples, flight after flight."""
     out = np.empty(len(samples))
     for piece, part in samples.chunks():
         field_b, _, _ = corrected(terms, theta, part)
-        out[piece] = np.sqrt(np.einsum("ij,ij->i", field_b, field_b)) - part.magnitude
+        length = np.sqrt(np.einsum("ij,ij->i", field_b, field_b))
+        stretched = (field_b / np.maximum(length, TINY)[:, None]) @ terms.matrix_of(theta)
+        out[piece] = (length - part.magnitude) / np.sqrt(np.einsum("ij,ij->i", stretched, stretched))
     return out
 
 
 def linearised(terms: Terms, theta: np.ndarray, part: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Residuals (n,), the parameters they depend on (m,), and the derivatives (4) (n, m); samples of one flight."""
+    """Distances (n,), the parameters they depend on (m,), and the derivatives (6) (n, m); samples of one flight."""
     field_b, w, gain = corrected(terms, theta, part)
-    length = np.sqrt(np.einsum("ij,ij->i", field_b, field_b))
-    u = field_b / np.maximum(length, 1e-12)[:, None]
-    outer_gain = gain[:, None] if terms.gain == "field" else 1.0
     matrix = terms.matrix_of(theta)
-    to_w = outer_gain * (u @ matrix)  # d |field_b| / d w
-    along_reading = np.einsum("ij,ij->i", u @ matrix, w if terms.gain == "field" else part.field_s)
+    length = np.maximum(np.sqrt(np.einsum("ij,ij->i", field_b, field_b)), TINY)[:, None]
+    u = field_b / length
+    v = u @ matrix
+    stretch = np.sqrt(np.einsum("ij,ij->i", v, v))[:, None]
+    distance = (length - part.magnitude[:, None]) / stretch
+    turning = v @ matrix / (stretch * length)  # d stretch / d field_b, before its part along u is taken out
+    turning -= np.einsum("ij,ij->i", turning, u)[:, None] * u
+    along = (u - distance * turning) / stretch
+    outer_gain = gain[:, None] if terms.gain == "field" else 1.0
+    to_w = outer_gain * (along @ matrix)
     columns: list[np.ndarray] = []
     if terms.bias:
         columns.append(-to_w)
-    if terms.matrix == "scale":
-        columns.append(np.einsum("ij,ij->i", outer_gain * u, w)[:, None])
-    if terms.matrix == "full":
-        columns.append(np.stack([(u[:, i] * w[:, j] + (i != j) * u[:, j] * w[:, i]) for i, j in SYMMETRIC], axis=1) * outer_gain)
+    if terms.matrix != "none":
+        pairs = np.einsum("ni,nj->nij", along, outer_gain * w) - np.einsum("ni,nj->nij", distance * v / stretch**2, u)
+        pairs = np.stack([pairs[:, i, j] + (i != j) * pairs[:, j, i] for i, j in SYMMETRIC], axis=1)
+        columns.append(pairs if terms.matrix == "full" else pairs[:, :3].sum(axis=1, keepdims=True))
+    along_reading = np.einsum("ij,ij->i", along @ matrix, w if terms.gain == "field" else part.field_s)
     if terms.temperature:
         columns.append((along_reading * part.temperature)[:, None])
     if terms.drift:
@@ -196,7 +234,7 @@ def linearised(terms: Terms, theta: np.ndarray, part: Samples) -> tuple[np.ndarr
         columns.append(along_reading[:, None] * basis)
         start = terms.gain_slice(flight).start
         where = np.concatenate([where, np.arange(start + local.start, start + local.stop)])
-    return length - part.magnitude, where, np.concatenate(columns, axis=1) if columns else np.empty((len(part), 0))
+    return distance[:, 0], where, np.concatenate(columns, axis=1) if columns else np.empty((len(part), 0))
 
 
 def gain_sums(terms: Terms, samples: Samples) -> np.ndarray:
@@ -212,7 +250,7 @@ def gain_sums(terms: Terms, samples: Samples) -> np.ndarray:
 
 def field_jacobian(terms: Terms, theta: np.ndarray, part: Samples) -> tuple[np.ndarray, np.ndarray]:
     """The parameters that field_b of these samples (one flight) depends on (m,), and its derivatives (n, 3, m)."""
-    field_b, w, gain = corrected(terms, theta, part)
+    _, w, gain = corrected(terms, theta, part)
     matrix, n = terms.matrix_of(theta), len(part)
     outer_gain = gain[:, None] if terms.gain == "field" else np.ones((n, 1))
     to_w = outer_gain[:, :, None] * matrix
