@@ -2,7 +2,126 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+from typing import Annotated, Any
 
-def calibrate() -> int:
-    """Calibrate."""
+import typer
+
+from fieldline.cli import options
+from fieldline.cli.inputs import Source, orbit_for, read_flight
+from fieldline.cli.outputs import stem_of, targets, wrote
+from fieldline.cli.progress import progress_on_stderr
+
+ENDINGS = (".json", ".html")
+
+
+def calibrate(
+    telemetry: Annotated[list[Path], typer.Argument(help="One or several files of one satellite.", show_default=False)],
+    orbit: options.Orbit = None,
+    out: options.Out = None,
+    model: options.Model = "IGRF-14",
+    calibration: Annotated[
+        str, typer.Option(help="The sensor's model: auto, bias, full, full+gain, full+drift, full+temperature, ...")
+    ] = "auto",
+    use: Annotated[
+        list[str] | None, typer.Option(help="Columns that terms may use: temperature, dipole, current.", show_default=False)
+    ] = None,
+    mapping: options.Mapping = None,
+    mag_columns: options.MagColumns = None,
+    time_column: options.TimeColumn = None,
+    unit: options.Unit = None,
+    repair: options.Repair = False,
+    eop: options.Eop = None,
+    norad_id: options.NoradId = None,
+    max_orbit_age_days: options.MaxAge = 30.0,
+    quiet: options.Quiet = False,
+    as_json: options.Json = False,
+) -> int:
+    """Calibrate a magnetometer from the magnitude of its readings, without attitude.
+
+    Writes STEM.json, which `fieldline attitude --calibration STEM.json` takes, and STEM.html. Several files share matrix and
+    bias; each has a gain of its own.
+    """
+    source = Source(
+        orbit=orbit, mapping=mapping, mag_columns=mag_columns, time_column=time_column, unit=unit, repair=repair, eop=eop,
+        norad_id=norad_id, max_orbit_age_days=max_orbit_age_days,
+    )  # fmt: skip
+    paths = targets(stem_of(out, telemetry[0], "calibration"), ENDINGS, [*telemetry, orbit, mapping, eop])
+    columns = tuple(name.strip() for one in use or () for name in one.split(","))
+    with progress_on_stderr(quiet) as progress:
+        flown = [read_flight(path, source, progress) for path in telemetry]
+        orbits = [orbit_for(one, source, progress) for one in flown]
+        found, flights = _calibrated(flown, orbits, model, calibration, columns, progress)
+        settings = {"model": model, "calibration": calibration, "use": list(columns)}
+        written = _write(found, flights, settings, paths)
+    summaries = [flight.summary for flight in flights]
+    if as_json:
+        print(json.dumps(summaries[0] if len(summaries) == 1 else summaries, indent=2))
+    elif not quiet:
+        from fieldline.report.calibration_report import verdict_sentence
+
+        print(f"{verdict_sentence(summaries)}\n{wrote(written)}")
     return 0
+
+
+def _calibrated(
+    flown: list, orbits: list, model: str, calibration: str, columns: tuple[str, ...], progress: Any
+) -> tuple[tuple, list]:
+    """The calibration of each file, and what the report shows of it."""
+    from fieldline.estimation.calibrate import calibrate_against
+    from fieldline.estimation.reference import reference_along_orbit
+
+    progress("calibration", 0, 1)
+    references = [reference_along_orbit(t.time_utc, o, model) for t, o in zip(flown, orbits, strict=True)]
+    found = calibrate_against(flown, references, calibration=calibration, use=columns)
+    progress("calibration", 1, 1, f"{found[0].model}, {', '.join(f'{1e9 * c.residual_rms_tesla:.0f}' for c in found)} nT RMS")
+    return found, [_shown(c, t, r) for c, t, r in zip(found, flown, references, strict=True)]
+
+
+def _shown(calibration: Any, telemetry: Any, reference: Any) -> Any:
+    """A flight as the report takes it, with the gain's knots on the flight's own clock."""
+    import numpy as np
+
+    from fieldline.environment import eclipse
+    from fieldline.report.calibration_report import CalibratedFlight
+    from fieldline.report.record import dark_spells
+
+    field_b = calibration.apply(
+        telemetry.seconds,
+        telemetry.field_s,
+        temperature_k=telemetry.temperature_k,
+        dipole_command_b=telemetry.dipole_command_b,
+        solar_current=telemetry.solar_current,
+        epoch_utc=telemetry.epoch_utc,
+    )
+    later_s = float((telemetry.epoch_utc - calibration.epoch_utc) / np.timedelta64(1, "s"))
+    summary = calibration.summary()
+    summary["gain_knots_s"] = [knot - later_s for knot in summary["gain_knots_s"]]
+    return CalibratedFlight(
+        name=telemetry.name,
+        time_utc=telemetry.time_utc,
+        field_s=telemetry.field_s,
+        field_b=field_b,
+        magnitude_tesla=reference.magnitude,
+        used=telemetry.usable,
+        summary=summary,
+        lines=telemetry.describe(),
+        dark=dark_spells(telemetry.seconds, eclipse(reference.position_i, telemetry.time_utc)),
+    )
+
+
+def _write(found: tuple, flights: list, settings: dict[str, Any], paths: dict[str, Path]) -> list[Path]:
+    """STEM.json and STEM.html, together."""
+    from fieldline import __version__
+    from fieldline.estimation.calibration import calibrations_to_json
+    from fieldline.files import write_together
+    from fieldline.report.calibration_report import calibration_html
+
+    html = calibration_html(flights, settings, {"fieldline": __version__})
+    return write_together(
+        [
+            (paths[".json"], lambda path: path.write_text(calibrations_to_json(found), encoding="utf-8")),
+            (paths[".html"], lambda path: path.write_text(html, encoding="utf-8")),
+        ]
+    )

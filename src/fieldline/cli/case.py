@@ -25,14 +25,13 @@ def case(
     quiet: options.Quiet = False,
 ) -> int:
     """Run a published case: writes STEM.nc with every signal and STEM.png with the figure."""
-    from fieldline.cases import CASES
+    from fieldline.cases import case_named
 
-    if name not in CASES:
-        raise InputError(f'there is no case "{name}"; {nearest(name, CASES)}')
-    arguments = parse_settings(set_ or [], CASES[name])
+    run = case_named(name)
+    arguments = parse_settings(set_ or [], run)
     stem = Path(name) if out is None else out
     paths = targets(stem, (".nc", ".png"), [])
-    dataset = CASES[name](**arguments)
+    dataset = run(**arguments)
     written = _write(dataset, paths)
     if not quiet:
         print(wrote(written))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldline.files import write_text_whole, write_whole
-from fieldline.report.record import Record
+from fieldline.report.record import Record, dark_spells
 from fieldline.report.theme import Picture, themed, write_png, write_svg
 
 if TYPE_CHECKING:
@@ -88,7 +87,7 @@ def _pictures(record: Record) -> dict[str, list[Picture]]:
     from fieldline.report.track_figure import track_picture
 
     with themed():
-        gain = gain_picture(record.verdict.get("calibration", {}), record.time_utc[0], list(_eclipses(record)))
+        gain = gain_picture(record.verdict.get("calibration", {}), record.time_utc[0], _eclipses(record))
         groups = {
             "field": [field_picture(record), magnitude_picture(record)],
             "motion": [rate_picture(record), attitude_picture(record), uncertainty_picture(record)],
@@ -99,14 +98,9 @@ def _pictures(record: Record) -> dict[str, list[Picture]]:
     return {name: [p for p in group if p is not None] for name, group in groups.items()}
 
 
-def _eclipses(record: Record) -> Iterator[tuple[float, float]]:
+def _eclipses(record: Record) -> list[tuple[float, float]]:
     """Start and stop [s] of each stay in the shadow."""
-    if not record.has("sunlit"):
-        return
-    dark = np.concatenate([[False], record.values("sunlit") < 0.5, [False]])
-    edges = np.flatnonzero(dark[1:] != dark[:-1])
-    for start, stop in zip(edges[::2], edges[1::2], strict=True):
-        yield float(record.seconds[start]), float(record.seconds[stop - 1])
+    return dark_spells(record.seconds, record.values("sunlit")) if record.has("sunlit") else []
 
 
 def _name(record: Record) -> str:

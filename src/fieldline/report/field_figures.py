@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fieldline.report.record import MICROTESLA, Record
+from fieldline.report.record import MICROTESLA, MagnitudeRecord, Record, lengths
 from fieldline.report.series import legend, line, points, room
 from fieldline.report.theme import AXES, AXIS_COLOURS, GREY, INK, Picture, label_outer, panels
 
@@ -52,37 +52,37 @@ def _zoom(axes: Any, record: Record, window: slice, measured: np.ndarray, predic
 
 
 def magnitude_picture(record: Record) -> Picture:
-    """The magnitude as it came, after calibration, and its difference from the model."""
-    model = _length(record.values("field_i", MICROTESLA))
-    before, after = (_length(record.values(name, MICROTESLA)) for name in ("field_raw_s", "field_b"))
+    """The magnitude of an estimate's field as it came, after calibration, and its difference from the model."""
+    before, after, model = (lengths(record.values(name, MICROTESLA)) for name in ("field_raw_s", "field_b", "field_i"))
+    return magnitudes_picture(MagnitudeRecord(record.time_utc, before, after, model, record.used))
+
+
+def magnitudes_picture(record: MagnitudeRecord, name: str = "magnitude", of: str = "") -> Picture:
+    """Magnitudes before and after calibration; `of` says of which flight."""
     figure, axes = panels(3, 1, height_in=5.4, heights=(1.0, 1.0, 0.8), row_gap=0.32)
     rows = axes[:, 0]
-    for one, values, title in ((rows[0], before, "as the file gives it"), (rows[1], after, "after calibration")):
+    left = record.after - record.model
+    for one, values, title in ((rows[0], record.before, "as the file gives it"), (rows[1], record.after, "after calibration")):
         points(one, record.time, values, AXIS_COLOURS[0], "measured")
-        line(one, record.time, model, INK, "model", width=1.4, gap=record.widest)
-        one.set_ylim(room(np.concatenate([values[record.used], model]), tails=0.0005, share=0.12))
+        line(one, record.time, record.model, INK, "model", width=1.4, gap=record.widest)
+        one.set_ylim(room(np.concatenate([values[record.used], record.model]), tails=0.0005, share=0.12))
         one.set_ylabel("|B|  [µT]")
         one.set_title(title)
         legend(one)
-    points(rows[2], record.time, after - model, AXIS_COLOURS[1])
+    points(rows[2], record.time, left, AXIS_COLOURS[1])
     rows[2].axhline(0.0, color=INK, linewidth=0.8)
-    rows[2].set_ylim(room((after - model)[record.used], tails=0.001, share=0.2))
+    rows[2].set_ylim(room(left[record.used], tails=0.001, share=0.2))
     rows[2].set_ylabel("[µT]")
     rows[2].set_title("after calibration, less the model")
     for one in rows:
         one.set_xlim(record.time[0], record.time[-1])
     label_outer(axes, (record.clock.label,))
-    rms = [float(np.sqrt(np.nanmean((values - model)[record.used] ** 2))) for values in (before, after)]
+    rms = [float(np.sqrt(np.nanmean(d[record.used] ** 2))) for d in (record.before - record.model, left)]
     return Picture(
-        "magnitude",
-        "Magnitude before and after calibration",
+        name,
+        "Magnitude before and after calibration" + (f": {of}" if of else ""),
         f"Calibration took the difference from the model from {rms[0]:.3g} to {rms[1]:.3g} µT RMS; "
         "what is left should scatter about zero without waves.",
         f"Field magnitude against the model: {rms[0]:.3g} microtesla RMS apart before, {rms[1]:.3g} after calibration.",
         figure,
     )
-
-
-def _length(vectors: np.ndarray) -> np.ndarray:
-    """(n,) lengths of (n, 3)."""
-    return np.sqrt(np.einsum("ij,ij->i", vectors, vectors))

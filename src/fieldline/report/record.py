@@ -12,16 +12,10 @@ import numpy as np
 MICROTESLA = 1e6
 
 
-@dataclass(frozen=True)
-class Record:
-    """A Dataset of `estimate_attitude` with its time axis and its verdict; series are read through `vector` and `series`."""
+class TimeAxis:
+    """What follows from `time_utc` (n,) datetime64[ns]: seconds, and the axis that figures draw against."""
 
-    dataset: Any
-
-    @cached_property
-    def time_utc(self) -> np.ndarray:
-        """(n,) datetime64[ns]."""
-        return self.dataset["time"].values.astype("datetime64[ns]")
+    time_utc: np.ndarray
 
     @cached_property
     def seconds(self) -> np.ndarray:
@@ -47,6 +41,18 @@ class Record:
     def widest(self) -> float:
         """The widest step, in the clock's unit, that a line is drawn over."""
         return 5.5 * self.step_s / self.clock.unit_s
+
+
+@dataclass(frozen=True)
+class Record(TimeAxis):
+    """A Dataset of `estimate_attitude` with its time axis and its verdict."""
+
+    dataset: Any
+
+    @cached_property
+    def time_utc(self) -> np.ndarray:
+        """(n,) datetime64[ns]."""
+        return self.dataset["time"].values.astype("datetime64[ns]")
 
     @cached_property
     def verdict(self) -> dict[str, Any]:
@@ -80,6 +86,29 @@ class Record:
         first = int(np.searchsorted(self.seconds, middle - 0.5 * length))
         last = int(np.searchsorted(self.seconds, middle + 0.5 * length, side="right"))
         return slice(first, max(last, min(first + 2, n)))
+
+
+@dataclass(frozen=True)
+class MagnitudeRecord(TimeAxis):
+    """Magnitudes over time [µT]: as the file gives them, after calibration, and the model's; used (n,) bool."""
+
+    time_utc: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    model: np.ndarray
+    used: np.ndarray
+
+
+def dark_spells(seconds: np.ndarray, sunlit: np.ndarray) -> list[tuple[float, float]]:
+    """Start and stop [s] of each stay where less than half of the Sun is seen."""
+    dark = np.concatenate([[False], sunlit < 0.5, [False]])
+    edges = np.flatnonzero(dark[1:] != dark[:-1])
+    return [(float(seconds[a]), float(seconds[b - 1])) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def lengths(vectors: np.ndarray) -> np.ndarray:
+    """(n,) lengths of (n, 3)."""
+    return np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
 
 
 @dataclass(frozen=True)

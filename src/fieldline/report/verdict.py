@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -25,10 +26,14 @@ def standing(verdict: dict[str, Any]) -> str:
 def verdict_panel(verdict: dict[str, Any]) -> str:
     """The sentence, large, in the colour of its standing, with the warnings under it."""
     state = standing(verdict)
+    return panel(state, WORDS[state], verdict.get("sentence", ""), verdict.get("warnings", []))
+
+
+def panel(state: str, words: str, sentence: str, lines: Sequence[str] = ()) -> str:
+    """A coloured box that opens a report."""
     return (
         f'<div class="verdict {state}" role="status"><span class="mark" aria-hidden="true">{MARKS[state]}</span>'
-        f'<div><p class="state">{WORDS[state]}</p><p class="sentence">{text(verdict.get("sentence", ""))}</p>'
-        f"{sentences(verdict.get('warnings', []))}</div></div>"
+        f'<div><p class="state">{words}</p><p class="sentence">{text(sentence)}</p>{sentences(lines)}</div></div>'
     )
 
 
