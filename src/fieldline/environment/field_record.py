@@ -17,6 +17,7 @@ from fieldline.environment.harmonics import Basis, basis_for, field_table, gradi
 from fieldline.errors import InputError
 from fieldline.frames.time import as_utc, decimal_year, iso_utc
 
+MOST_YEARS_CARRIED = 20.0  # past a model's end, on request
 NO_DIPOLES = np.zeros((0, 3))
 
 
@@ -146,7 +147,7 @@ class FieldModel:
         asked = f"time_utc holds {iso_utc(times.flat[worst], 0)}, but {self.name} covers {first:g} to {last:g}. "
         if 1900.0 <= year <= 2030.0:
             return asked + 'Use "IGRF-14" (1900 to 2030).'
-        if year > last and self.coefficients is not None:
+        if last < year <= last + MOST_YEARS_CARRIED and self.coefficients is not None:
             carried = f'Carry its secular variation on with field_model("{self.name}", until_year={np.ceil(year):g}), '
             return asked + carried + "and expect some 20 nT more error a year."
         return asked + 'No model here reaches that year but "centred-dipole" and "displaced-dipoles", with moments given.'

@@ -17,7 +17,7 @@ from numbers import Real
 import numpy as np
 
 from fieldline.environment.coefficients import igrf14, wmm2025
-from fieldline.environment.field_record import FieldModel
+from fieldline.environment.field_record import MOST_YEARS_CARRIED, FieldModel
 from fieldline.errors import InputError, nearest
 
 FOREVER = (-9999.0, 9999.0)  # decimal years of a model that does not know time
@@ -155,8 +155,9 @@ def _carried_on(model: FieldModel, until_year: float | None) -> FieldModel:
     if until_year is None or model.coefficients is None:
         return model
     first, last = model.years
-    if not isinstance(until_year, Real) or not last <= until_year <= last + 20.0:
-        raise InputError(f"until_year of {model.name} must lie in {last:g} to {last + 20:g}; got {until_year!r}.")
+    most = last + MOST_YEARS_CARRIED
+    if not isinstance(until_year, Real) or not last <= until_year <= most:
+        raise InputError(f"until_year of {model.name} must lie in {last:g} to {most:g}; got {until_year!r}.")
     if until_year == last:
         return model
     carried = model.coefficients.extended(float(until_year))

@@ -14,7 +14,10 @@ MOST_RADIUS_M = 2.0e9  # five times as far as the Moon, past the tip of the Eart
 def as_positions(name: str, position, axes: str) -> np.ndarray:
     """(..., 3) floats [m], finite, outside the Earth; the message says what else they may be."""
     try:
-        rows = np.asarray(position, dtype=float)
+        given = np.asarray(position)
+        if given.dtype.kind not in "fiuO":  # complex numbers would lose a part, truth values become metres
+            raise TypeError(f"not real numbers: {given.dtype}")
+        rows = given.astype(float, copy=False)
     except (ValueError, TypeError) as error:
         raise InputError(f"{name} must be numbers (..., 3) [m], {axes} axes; got {position!r:.60}.") from error
     if rows.ndim == 0 or rows.shape[-1] != 3:

@@ -25,6 +25,9 @@ NOW = np.datetime64("2024-01-01")
         (np.full((500, 2), 5e6), r"got \(500, 2\)"),
         (7e6, "axis of length 3"),
         (("a", "b", "c"), "must be numbers"),
+        (np.array([7e6j, 0.0, 7e6]), "must be numbers"),
+        (np.array([True, False, True]), "must be numbers"),
+        (None, "axis of length 3"),
         ([[7e6, 0.0, 0.0], [7e6, 0.0]], "must be numbers"),
     ],
 )
@@ -49,6 +52,7 @@ def test_the_bad_row_is_named():
         ("2031-06-01", "IGRF-14", "2031.*until_year=2032"),
         ("2024-12-31", "WMM2025", 'WMM2025 covers 2025 to 2030. Use "IGRF-14"'),
         ("2033-01-01", "dipole", "until_year=2033"),
+        ("2050-05-01", "IGRF-14", "No model here reaches"),
     ],
 )
 def test_a_year_outside_the_model_names_one_that_would_do(time, model, words):
