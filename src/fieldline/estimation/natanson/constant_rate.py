@@ -49,14 +49,17 @@ class Status(IntEnum):
     NO_REAL_ROOT = 1
     NO_CIRCLE = 2
     NO_DATA = 3
+    EVERY_ANGLE = 4
 
 
 WORDS = {
     Status.SOLVED: "solved",
     Status.NO_REAL_ROOT: "the discriminant is negative: errors of the derivatives leave no solution there",
     Status.NO_CIRCLE: "the field's derivative is zero or along the field, in body or in inertial axes (digitised too coarsely?)",
+    Status.EVERY_ANGLE: "the second derivatives vanish across the field: every attitude on the circle solves",
     Status.NO_DATA: "too near an end or a gap for the stencil of the derivatives",
 }
+TOLD = 1e-12  # of the terms of (3-9b): below it Q and R are rounding
 BEYOND = ("nan", "nearest", "previous")
 
 
@@ -133,9 +136,12 @@ def constant_rate_roots(derivatives_b, derivatives_i, *, beyond: str = "nan") ->
     circle = uncertainty_circle(derivatives_b, derivatives_i)
     second = projections(circle, derivatives_b.second, derivatives_i.second)
     p, q, r = coefficients(circle, second)
+    size = (circle.lambda_a + circle.lambda_r) * np.sum(np.abs(second[:4]), axis=0) + np.abs(second.s3)
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = -p / np.hypot(q, r)
+        told = np.hypot(q, r) > TOLD * size
+        ratio = np.where(told, -p / np.where(told, np.hypot(q, r), 1.0), np.nan)
     status = _status(derivatives_b, derivatives_i, ratio)
+    status[(status == Status.NO_CIRCLE) & np.isfinite(size)] = Status.EVERY_ANGLE
     spread = np.arccos(np.clip(ratio, -1.0, 1.0))
     angle = np.arctan2(r, q)[:, None] + spread[:, None] * np.array([-1.0, 1.0])
     if beyond != "nearest":

@@ -210,6 +210,9 @@ def fit_window(seconds, field_b, field_i, start_q_bi, start_omega_b, *, noise_te
     count = len(q_bi)
     if count == 0 or len(omega_b) != count:
         raise InputError(f"each start needs an attitude and a rate; got {count} attitudes and {len(omega_b)} rates.")
+    known = np.isfinite(q_bi).all(axis=1) & np.isfinite(omega_b).all(axis=1) & (np.abs(q_bi).max(axis=1) > 0.0)
+    if not known.all():
+        raise InputError(f"start {int(np.argmin(known))} is not a number or a zero quaternion; leave such starts out.")
     covariance, chi_square, iterations = np.empty((count, SIZE, SIZE)), np.empty(count), np.empty(count, dtype=np.int64)
     fit_all_kernel(times - epoch, body, inertial, q_bi, omega_b, float(noise_tesla), rounds, covariance, chi_square, iterations)
     order = np.argsort(chi_square)
