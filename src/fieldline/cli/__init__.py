@@ -56,6 +56,8 @@ def _run(arguments: list[str]) -> int:
         if not hasattr(error, "format_message"):
             raise
         return _refuse_usage(error)
+    if code == INTERRUPTED:  # newer Typer ends so by itself, older ones by Abort
+        raise KeyboardInterrupt
     return code if isinstance(code, int) else 0
 
 
