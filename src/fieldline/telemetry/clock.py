@@ -68,8 +68,8 @@ def is_local(name: str) -> bool:
 
 def rank(name: str, unit: str, value) -> int | None:
     """How well a column serves as the time (0 best), or None when it is none."""
-    _, unit_text = split_unit(name)
-    words = set(words_of(name)) | set(words_of(unit_text))
+    base, unit_text = split_unit(name)
+    words = set(words_of(base)) | set(words_of(unit_text))
     if isinstance(value, np.datetime64):
         return 0 if "utc" in words else 1
     if not words <= _WORDS or not words - set(_UNIT_WORDS) - {"d", "day", "days"}:
@@ -112,8 +112,8 @@ def time_kind(path, name: str, unit: str, value, given: str = "") -> TimeColumn:
         return TimeColumn(name, "datetime", "a date column")
     if _is_text(value):
         return TimeColumn(name, "iso", "ISO 8601 text")
-    _, unit_text = split_unit(name)
-    words = words_of(name) + words_of(unit_text)
+    base, unit_text = split_unit(name)
+    words = words_of(base) + words_of(unit_text)
     for kind in ("mjd", "jd"):
         if kind in words or ("julian" in words and ("modified" in words) == (kind == "mjd")):
             return TimeColumn(name, kind, "by its name")
