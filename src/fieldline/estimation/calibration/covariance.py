@@ -16,7 +16,7 @@ on a quiet day) hangs together over ten minutes, too long to be seen in the resi
 scores that such an error would make, block of ten minutes by block.
 
 Terms that the chosen candidate leaves out (the matrix of a bias-only fit) are not known to be absent: they enter (1) with
-a prior whose spread is what the fitted candidate's own residuals suggest, thrice over (`omitted_std`).
+a prior of their own (`omitted_std`).
 Source: Huber (1967); Newey and West, Econometrica 55 (1987) 703, for the idea; blocks after Cameron and Miller (2015).
 """
 
@@ -28,11 +28,13 @@ import numpy as np
 
 from fieldline.estimation.calibration.fit import DEGREES, Fit, Prior, normal_equations, prior_of, weights_of, with_prior
 from fieldline.estimation.calibration.model import Samples, Terms, gain_sums, linearised
+from fieldline.estimation.calibration.twin import twin
 
 MEMORY_LEVEL = 0.1
 LONGEST_SERIES = 131072
 BLOCKS_AT_LEAST = 12
 OMITTED_FACTOR = 3.0
+OMITTED_MATRIX_STD = 0.1
 FIELD_MODEL_STD_TESLA = 50e-9  # of the magnitude; Olsen & Stolle (2012), Annu. Rev. Earth Planet. Sci. 40, quiet-time sizes
 FIELD_MODEL_MEMORY_S = 600.0  # some 4000 km of ground track
 
@@ -99,9 +101,14 @@ def field_model_block(samples: Samples) -> int:
 
 
 def omitted_std(fit: Fit, samples: Samples) -> float:
-    """Spread of a term that was left out, as a fraction of the field: thrice the RMS of the residuals."""
+    """Spread of a matrix that was left out, as a fraction of the field.
+
+    Raw magnitudes that agree vouch for the sensor: thrice their RMS. Once a bias was fitted they vouch for nothing, since
+    it takes up what a matrix would have shown.
+    """
     inside = np.abs(fit.residual) < 6.0 * fit.scale
-    return OMITTED_FACTOR * float(np.sqrt(np.mean(fit.residual[inside] ** 2)) / np.median(samples.magnitude))
+    agreement = OMITTED_FACTOR * float(np.sqrt(np.mean(fit.residual[inside] ** 2)) / np.median(samples.magnitude))
+    return min(agreement, OMITTED_MATRIX_STD) if not fit.terms.bias else OMITTED_MATRIX_STD
 
 
 def widened(fit: Fit, samples: Samples) -> tuple[Terms, np.ndarray, Prior]:
@@ -141,4 +148,18 @@ def covariance_of(fit: Fit, samples: Samples, field_model_std: float) -> tuple[T
     inverse = np.linalg.inv(with_prior(information, prior))
     left = inverse @ half
     modelled = score_spread(terms, theta, samples, fit.scale, field_model_block(samples), field_model_std)
-    return terms, theta, left @ left.T + inverse @ (np.diag(prior.information) + modelled) @ inverse
+    covariance = left @ left.T + inverse @ (np.diag(prior.information) + modelled) @ inverse
+    worth = len(samples) / effective_samples(clipped(fit)) + field_model_block(samples) * (field_model_std / fit.scale) ** 2
+    away, odds = twin(fit, samples, worth)
+    return terms, theta, covariance + odds * np.outer(*[_as_widened(fit, terms, away)] * 2)
+
+
+def _as_widened(fit: Fit, terms: Terms, away: np.ndarray) -> np.ndarray:
+    """A difference of the candidate's parameters in the widened vector."""
+    out = np.zeros(terms.size)
+    for name, place in fit.terms.layout.items():
+        if name != "matrix" or fit.terms.matrix == "full":
+            out[terms.layout[name]] = away[place]
+        else:
+            out[terms.layout[name]][:3] = away[place]
+    return out

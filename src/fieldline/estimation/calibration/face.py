@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fieldline.errors import InputError, NoEstimateError, nearest
+from fieldline.estimation.calibration.clock import ClockScan, scan_clock
 from fieldline.estimation.calibration.covariance import FIELD_MODEL_STD_TESLA, clipped, covariance_of, effective_samples
 from fieldline.estimation.calibration.fit import OUTLIER_SIGMAS, Fit, fit, prior_of
 from fieldline.estimation.calibration.ladder import BASIC, best_fit, flight_splines
-from fieldline.estimation.calibration.model import Samples, Terms, magnitudes
+from fieldline.estimation.calibration.model import Samples, Terms, field_std, magnitudes
 from fieldline.estimation.calibration.record import Calibration, only_flight
 from fieldline.estimation.calibration.selection import Candidate, choose
 from fieldline.estimation.calibration.spline import KNOT_SPACING_S, UniformSpline
+from fieldline.estimation.calibration.words import with_sentences
 
 FEWEST_SAMPLES = 30
 THINNED = 6000  # samples that decide between candidates; all are used for the final fit
@@ -68,6 +71,9 @@ def calibrate_magnitude(
     epoch_utc=None,
     knot_spacing_s: float = KNOT_SPACING_S,
     field_model_std_tesla: float = FIELD_MODEL_STD_TESLA,
+    magnitude_at: Callable[[float], np.ndarray] | None = None,
+    clock_scan: bool = False,
+    clock_apply: bool = False,
 ) -> Calibration:
     """Bias, matrix and, where the data support them, a slow gain, drift and couplings: from magnitudes, without attitude.
 
@@ -83,6 +89,8 @@ def calibrate_magnitude(
         what is given is tried.
     epoch_utc : the time of seconds = 0, kept for use on other files.      knot_spacing_s : [s] of the slow gain.
     field_model_std_tesla : [T] slow error of `magnitude_tesla` itself, part of the covariance.
+    clock_scan : also scan an offset of the clock over +-120 s and report it; needs `magnitude_at(offset_s)` -> (n,) [T], the
+        model's magnitude at the samples' times plus the offset.      clock_apply : and calibrate with the best offset.
 
     Returns
     -------
@@ -95,7 +103,25 @@ def calibrate_magnitude(
         seconds=seconds, field_s=field_s, magnitude_tesla=magnitude_tesla, usable=usable, temperature_k=temperature_k,
         dipole_command_b=dipole_command_b, solar_current=solar_current, epoch_utc=epoch_utc,
     )  # fmt: skip
-    return calibrate_flights([flight], model=model, knot_spacing_s=knot_spacing_s, field_model_std_tesla=field_model_std_tesla)[0]
+    settings = {"knot_spacing_s": knot_spacing_s, "field_model_std_tesla": field_model_std_tesla}
+    found = calibrate_flights([flight], model=model, **settings)[0]
+    if not (clock_scan or clock_apply):
+        return found
+    if magnitude_at is None:
+        raise InputError("a clock scan needs magnitude_at(offset_s): the model's magnitude at shifted times.")
+    scan = scan_of(found, flight, magnitude_at)
+    if clock_apply and np.isfinite(scan.std_s):
+        shifted = replace(flight, magnitude_tesla=magnitude_at(scan.best_s))
+        found, scan = calibrate_flights([shifted], model=model, **settings)[0], replace(scan, applied=True)
+    return replace(found, clock=scan, sentences=(*found.sentences, scan.sentence()))
+
+
+def scan_of(found: Calibration, flight: Flight, magnitude_at: Callable[[float], np.ndarray]) -> ClockScan:
+    """The clock scan of a calibrated flight, with the terms that its calibration fitted."""
+    samples, units = gather([flight])
+    terms = terms_named(found.model, samples, found.terms.splines, 1)
+    one = climb(terms, samples.thinned(THINNED))
+    return scan_clock(one, lambda offset: gather([replace(flight, magnitude_tesla=magnitude_at(offset))])[0], units.field_tesla)
 
 
 def calibrate_flights(
@@ -118,7 +144,7 @@ def calibrate_flights(
         best, table = fit(wanted, np.zeros(0), samples, prior_of(wanted, samples)), []
     else:
         refuse_unfit(samples)
-        thin = thinned(samples)
+        thin = samples.thinned(THINNED)
         if wanted is None:
             first, table = choose(thin, splines, len(flights), units.field_tesla, unsure)
         else:
@@ -232,14 +258,6 @@ def refuse_unfit(samples: Samples) -> None:
         )
 
 
-def thinned(samples: Samples) -> Samples:
-    """At most THINNED samples, taken at random: an even step could fall in step with a spin."""
-    if len(samples) <= THINNED:
-        return samples
-    rng = np.random.default_rng(20020701)
-    return samples.take(np.sort(rng.choice(len(samples), THINNED, replace=False)))
-
-
 def physical_units(terms: Terms, units: Units) -> np.ndarray:
     """(parameters,) SI unit of each scaled parameter."""
     sizes = {
@@ -266,7 +284,7 @@ def _record(
     mine = samples.flight == number
     kept = samples.take(inside & mine)
     good = magnitudes(best.terms, best.theta, kept) - kept.magnitude if len(kept) else np.empty(0)
-    return Calibration(
+    found = Calibration(
         model=best.terms.name,
         terms=own,
         values=(theta * size)[where],
@@ -282,3 +300,6 @@ def _record(
         scale_tesla=best.scale * units.field_tesla,
         candidates=tuple(table),
     )
+    few = samples.take(mine).thinned(500)
+    error = float(np.sqrt(np.mean(field_std(terms, theta, covariance, few) ** 2)))
+    return with_sentences(found, error * units.field_tesla, units.field_tesla, model)

@@ -18,6 +18,8 @@ from fieldline.estimation.calibration.model import Samples, Terms, distances, ga
 
 DEGREES = 4.0
 GAIN_STD = 0.05  # a slow gain of more than a few per cent would be a broken sensor
+BIAS_FACTOR = 3.0  # a bias shows in the raw magnitudes by about its own size; along unseen axes it is not much larger
+LEAST_BIAS_STD = 0.01  # of the field
 MATRIX_STD = 0.15
 MEAN_GAIN_STD = 1e-6  # the mean gain belongs to D; this fixes it at 1
 SCALE_FLOOR = 1e-7  # of the field: a few pT, so that noise-free tests have a scale
@@ -48,8 +50,9 @@ class Fit:
 def prior_of(terms: Terms, samples: Samples) -> Prior:
     """Wide priors for every term that the candidate has."""
     reach = float(np.median(np.linalg.norm(samples.field_s, axis=1)) + np.median(samples.magnitude))
+    raw = float(np.median(np.abs(np.linalg.norm(samples.field_s, axis=1) - samples.magnitude)))
     stds = {
-        "bias": reach, "matrix": MATRIX_STD, "temperature": GAIN_STD, "drift": reach,
+        "bias": BIAS_FACTOR * raw + LEAST_BIAS_STD, "matrix": MATRIX_STD, "temperature": GAIN_STD, "drift": reach,
         "dipole": reach, "current": reach, "gain": GAIN_STD,
     }  # fmt: skip
     mean, information = np.zeros(terms.size), np.zeros(terms.size)

@@ -75,6 +75,13 @@ class Samples:
         noise = min(noise, LARGEST_NOISE)
         return replace(self, magnitude=self.magnitude + noise**2 / self.magnitude)
 
+    def thinned(self, most: int) -> Samples:
+        """At most so many samples, taken at random: an even step could fall in step with a spin."""
+        if len(self) <= most:
+            return self
+        rng = np.random.default_rng(20020701)
+        return self.take(np.sort(rng.choice(len(self), most, replace=False)))
+
     def chunks(self) -> Iterator[tuple[slice, Samples]]:
         """Runs of at most CHUNK samples, each within one flight."""
         edges = np.flatnonzero(np.diff(self.flight)) + 1

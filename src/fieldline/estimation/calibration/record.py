@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fieldline.errors import InputError
+from fieldline.estimation.calibration.clock import ClockScan
 from fieldline.estimation.calibration.model import Samples, Terms, corrected, field_std
 from fieldline.estimation.calibration.selection import Candidate
 
@@ -43,6 +44,7 @@ class Calibration:
     scale_tesla: float
     candidates: tuple[Candidate, ...] = ()
     sentences: tuple[str, ...] = ()
+    clock: ClockScan | None = None
 
     @property
     def bias_s(self) -> np.ndarray:
@@ -147,6 +149,19 @@ class Calibration:
             columns["temperature"] = columns["temperature"] - self.temperature_reference_k
         return Samples(seconds, field_s, np.ones(n), np.zeros(n, dtype=int), seconds - self.reference_s, **columns)
 
+    def to_json(self) -> str:
+        """JSON text that `from_json` reads back."""
+        from fieldline.estimation.calibration.storage import to_json
+
+        return to_json(self)
+
+    @staticmethod
+    def from_json(text: str, name: str = "calibration") -> Calibration:
+        """The record of `to_json`'s text; InputError (with `name`) for anything else."""
+        from fieldline.estimation.calibration.storage import from_json
+
+        return from_json(text, name)
+
     def summary(self) -> dict:
         """Plain types for a report or a file's attributes: microtesla where the key says so."""
         std = self.std
@@ -167,6 +182,17 @@ class Calibration:
                 for n, v, s in zip(self.parameter_names, self.values, std, strict=True)
             ],
             "rms_nt": self.residual_rms_tesla * 1e9,
+            "fitted_parameters": self.fitted,
+            "clock": None
+            if self.clock is None
+            else {
+                "offsets_s": list(self.clock.offsets_s),
+                "rms_nt": [float(r) * 1e9 for r in self.clock.rms_tesla],
+                "best_s": self.clock.best_s,
+                "std_s": self.clock.std_s if np.isfinite(self.clock.std_s) else None,
+                "sigmas": self.clock.sigmas,
+                "applied": self.clock.applied,
+            },
             "samples": self.samples,
             "outliers": self.outliers,
             "effective_samples": self.effective_samples,
