@@ -8,6 +8,7 @@ leap seconds. Local time is refused: no file says where its clock's summer time 
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -63,7 +64,10 @@ def _number(value) -> float:
 def is_local(name: str) -> bool:
     """Whether a name speaks of local time: local_time, time_CLT, time_UTC-3."""
     words = set(words_of(name))
-    return bool((words & _LOCAL and words & (_WORDS | {"local"}) and words <= _WORDS | _LOCAL) or _OFFSET.search(name))
+    return bool(
+        (words & _LOCAL and words & (_WORDS | {"local"}) and words <= _WORDS | _LOCAL)
+        or (words & _WORDS and _OFFSET.search(name))
+    )
 
 
 def rank(name: str, unit: str, value) -> int | None:
@@ -223,10 +227,12 @@ def _leap(utc: np.ndarray) -> np.ndarray:
     days, where = np.unique(utc.astype("datetime64[D]"), return_inverse=True)
     known = ~np.isnat(days)
     leap = np.zeros(len(days), dtype="timedelta64[ns]")
-    for k in np.flatnonzero(known):
-        year, month, day = (int(part) for part in str(days[k]).split("-"))
-        if 1972 <= year < 2100:
-            leap[k] = np.timedelta64(round(float(erfa.dat(year, month, day, 0.0)) * 1e9), "ns")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # erfa warns of years after its table: no leap second is announced for them
+        for k in np.flatnonzero(known):
+            year, month, day = (int(part) for part in str(days[k]).split("-"))
+            if 1972 <= year < 2100:
+                leap[k] = np.timedelta64(round(float(erfa.dat(year, month, day, 0.0)) * 1e9), "ns")
     return leap[where]
 
 

@@ -40,7 +40,7 @@ _OTHER = set(
     "stddev rms var variance cov flag flags quality status valid validity error err norm total magnitude abs nec ned enu "
     "eci gcrs gcrf ecef itrf itrs inertial orbital lvlh orbit target desired setpoint sp bias offset gain mode state health "
     "acc accel accelerometer acceleration quat quaternion q roll pitch yaw euler residue sim truth true counter index id "
-    "voltage power battery gps vector".split()
+    "voltage power battery gps vector d db delta diff aocs other correction corr offset".split()
 )
 _RAW_ONLY = {"temperature", "solar_current", "wheel_speed"}  # quantities without axes
 _AXIS_LETTERS = "xyz"

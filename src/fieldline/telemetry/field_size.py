@@ -14,6 +14,7 @@ import numpy as np
 
 from fieldline.errors import InputError
 from fieldline.telemetry.columns import Column
+from fieldline.telemetry.quality import FILL_BEYOND
 
 SIZE_TESLA = (1.0e-5, 7.0e-4)  # the 95 % quantile of the raw size
 SPREAD_MAX_TESLA = 1.8e-4  # the 95 % quantile of the distance from the median
@@ -22,8 +23,8 @@ _UNITS = (("nT", 1e-9), ("uT", 1e-6), ("mG", 1e-7), ("G", 1e-4), ("mT", 1e-3), (
 
 
 def sizes(field_s: np.ndarray) -> tuple[float, float]:
-    """95 % quantiles of the size and of the distance from the median of finite samples (n, 3)."""
-    good = field_s[np.isfinite(field_s).all(axis=1)]
+    """95 % quantiles of the size and of the distance from the median of samples (n, 3) that are no fill values."""
+    good = field_s[(np.abs(field_s) < FILL_BEYOND).all(axis=1)]
     size = np.linalg.norm(good, axis=1)
     spread = np.linalg.norm(good - np.median(good, axis=0), axis=1)
     return float(np.quantile(size, 0.95)), float(np.quantile(spread, 0.95))

@@ -29,7 +29,7 @@ STUCK_CHANGES = 5.0
 MANY = 0.05  # spikes beyond this share are no spikes but the signal
 FIELD_MAX_TESLA = 7e-5  # the strongest field in low orbit
 _FILLS = (-9999.0, -999.0, 9999.0, 32767.0, -32768.0, 65535.0, 99999.0, -99999.0, 999999.0)
-_HUGE = 1e20  # fill values of CDF and NetCDF are 1e30 and more
+FILL_BEYOND = 1e20  # fill values of CDF and NetCDF are 1e30 and more
 
 
 class Faults(NamedTuple):
@@ -67,7 +67,7 @@ def find_faults(seconds: np.ndarray, raw: np.ndarray, tesla: float) -> Faults:
 
 def find_fills(raw: np.ndarray, skip: np.ndarray) -> np.ndarray:
     """(n,) bool: rows of zeros, rows of one fill value, and fill values far outside what the axis otherwise reads."""
-    fills = (raw == 0.0).all(axis=1) | (np.abs(raw) > _HUGE).any(axis=1)
+    fills = (raw == 0.0).all(axis=1) | (np.abs(raw) > FILL_BEYOND).any(axis=1)
     for fill in _FILLS:
         hit = raw == fill
         fills |= hit.all(axis=1)

@@ -14,7 +14,7 @@ from fieldline.telemetry.columns import Column
 from fieldline.telemetry.field_size import check_size
 from fieldline.telemetry.mapping import read_mapping
 from fieldline.telemetry.position import position_in_itrs
-from fieldline.telemetry.quality import find_faults
+from fieldline.telemetry.quality import FILL_BEYOND, find_faults
 from fieldline.telemetry.record import Quality, Recognised, Telemetry
 from fieldline.telemetry.table import AXES, Table, open_table
 
@@ -96,7 +96,7 @@ def _iso(time) -> str:
 def _check_field(path, choice: Choice, raw: np.ndarray) -> None:
     """Refuse a magnetometer without numbers, or one that never moves."""
     names = ", ".join(column.name for column in choice.magnetometer)
-    good = raw[np.isfinite(raw).all(axis=1)]
+    good = raw[(np.abs(raw) < FILL_BEYOND).all(axis=1)]
     if not len(good):
         raise InputError(f'"{path}": the magnetometer columns {names} hold no sample with three finite numbers.')
     span = np.ptp(good, axis=0)

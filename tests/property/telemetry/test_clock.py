@@ -114,7 +114,7 @@ def test_times_that_cannot_be_are_refused(tmp_path, name, stamps, words):
 def test_gps_time_across_a_leap_second(tmp_path):
     """2016-12-31T23:59:59 is 1167264016 GPS seconds, 2017-01-01T00:00:00 is 1167264018: the leap second lies between."""
     stamps = [1167264016 - COUNT + 2 + k for k in range(COUNT - 1)] + [1167264018]
-    stamps = stamps[:-2] + [1167264016, 1167264018]
+    stamps = [*stamps[:-2], 1167264016, 1167264018]
     telemetry = read_telemetry(write(tmp_path / "a.csv", "gps_s", stamps))
     assert str(telemetry.time_utc[-2])[:19] == "2016-12-31T23:59:59"
     assert str(telemetry.time_utc[-1])[:19] == "2017-01-01T00:00:00"

@@ -104,7 +104,7 @@ def test_parquet_flat_list_and_struct(tmp_path):
     vectors = pa.table({"timestamp": TIME, "B_VFM": FIELD_NT.tolist()})
     pq.write_table(vectors, path)
     assert same(read_telemetry(path, unit="nT"))
-    with pytest.raises(InputError, match="do not say their unit.*nT"):
+    with pytest.raises(InputError, match=r"do not say their unit.*nT"):
         read_telemetry(path)
     structs = [dict(zip("xyz", row, strict=True)) for row in FIELD_NT.tolist()]
     pq.write_table(pa.table({"unix_ns": TIME.astype(int), "mag_nT": structs}), path)
@@ -146,7 +146,10 @@ def test_swarm_like_cdf(tmp_path, epoch):
     variables = [
         ("Timestamp", getattr(cdfwrite.CDF, epoch, None) or {"CDF_EPOCH": 31, "CDF_TIME_TT2000": 33}[epoch], [], stamps, "-"),
         ("B_VFM", 45, [3], FIELD_NT, "nT"),
-        ("B_NEC", 45, [3], FIELD_NT[:, ::-1], "nT"),
+        *((name, 45, [3], FIELD_NT[:, ::-1], "nT") for name in ("B_NEC", "dB_Sun", "dB_AOCS", "dB_other", "B_error")),
+        *((name, 45, [], FIELD_NT[:, 0], "nT") for name in ("F", "dF_Sun", "F_error", "ASM_Freq_Dev")),
+        ("q_NEC_CRF", 45, [4], np.ones((COUNT, 4)), "-"),
+        ("Flags_B", 45, [], np.zeros(COUNT), "-"),
         ("Latitude", 45, [], np.linspace(-60.0, 60.0, COUNT), "degrees"),
         ("Longitude", 45, [], np.full(COUNT, 90.0), "degrees"),
         ("Radius", 45, [], np.full(COUNT, 6.85e6), "m"),

@@ -116,5 +116,5 @@ def test_a_scale_is_a_unit():
 
 @pytest.mark.parametrize("text", ["furlong", "", "nT nT", "0 nT", "nan nT", "1e999 nT"])
 def test_a_unit_that_is_none_names_the_known_ones(text):
-    with pytest.raises(InputError, match="unit|scale"):
+    with pytest.raises(InputError, match=r"unit|scale"):
         parse_unit(text, "magnetometer", "--unit")
