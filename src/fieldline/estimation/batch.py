@@ -21,7 +21,7 @@ from fieldline.estimation.motion import RateModel, propagate, random_walk, rigid
 from fieldline.estimation.series import Series
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit, to_body
 from fieldline.frames.matrices import IDENTITY, matadd, matmul, skew
-from fieldline.frames.vectors import put, vec
+from fieldline.frames.vectors import add, put, scale, vec
 
 DIPOLE_STD = 1.0  # [A m2 / kg m2] prior of the residual dipole: 0.02 A m2 on a 3U cubesat
 ROBUST_SIGMA = 4.0
@@ -38,7 +38,8 @@ def _fill(series, anchor, stop, step, q, w, model, predicted, slopes):
     while k != stop:
         if k != anchor:
             h = seconds[k] - seconds[k - step]
-            q, w, f, g, j = propagate(q, w, vec(field_i, k - step), vec(pull_i, k - step), h, model)
+            gyro = scale(0.5, add(vec(series.gyro_b, k - step), vec(series.gyro_b, k)))
+            q, w, f, g, j = propagate(q, w, gyro, vec(field_i, k - step), vec(pull_i, k - step), h, model)
             psi = matadd(matmul(f, psi), matmul(g, lam))
             phi = matmul(f, phi)
             lam = matmul(j, lam)

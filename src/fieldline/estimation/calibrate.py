@@ -14,6 +14,7 @@ import numpy as np
 
 from fieldline.errors import InputError, nearest
 from fieldline.estimation.calibration import Calibration, Flight, calibrate_flights
+from fieldline.estimation.calibration.face import scan_of
 from fieldline.estimation.reference import Reference, reference_along_orbit
 from fieldline.orbit import Orbit
 from fieldline.telemetry import Telemetry
@@ -27,6 +28,7 @@ def calibrate(
     *,
     model: str = "IGRF-14",
     calibration: str = "auto",
+    clock_scan: bool = False,
     use: Sequence[str] = (),
 ) -> Calibration | tuple[Calibration, ...]:
     """Bias, matrix and, where the data support them, gain, drift and couplings of a magnetometer.
@@ -36,6 +38,7 @@ def calibrate(
     telemetry : one file's Telemetry, or several of one satellite, which then share matrix and bias.
     orbit : the satellite's orbit; one for all files, or one for each.
     model : the field model.      calibration : the sensor's model, as of `calibrate_magnitude`; "auto" lets the data decide.
+    clock_scan : also tell whether the magnitudes would fit better at shifted times, and how surely; nothing is shifted.
     use : columns that terms may be fitted to, of "temperature", "dipole", "current".
 
     Returns
@@ -51,7 +54,24 @@ def calibrate(
         raise InputError(f"one orbit, or one for each of the {len(flown)} telemetries, is needed; got {len(orbits)}.")
     references = [reference_along_orbit(t.time_utc, o, model) for t, o in zip(flown, orbits, strict=True)]
     found = calibrate_against(flown, references, calibration=calibration, use=use)
+    if clock_scan:
+        found = tuple(with_clock_scan(*one, model) for one in zip(found, flown, orbits, references, strict=True))
     return found if several else found[0]
+
+
+def with_clock_scan(
+    calibration: Calibration, telemetry: Telemetry, orbit: Orbit, reference: Reference, model: str
+) -> Calibration:
+    """The calibration with the scan of its flight's clock, at offsets over two minutes to each side."""
+
+    def magnitude_at(offset_s: float) -> np.ndarray:
+        later = telemetry.time_utc + np.timedelta64(round(1e9 * offset_s), "ns")
+        return reference_along_orbit(later, orbit, model).magnitude
+
+    columns = [name for name in COLUMNS if getattr(telemetry, COLUMNS[name]) is not None]
+    flight = _shifted(_flight(telemetry, reference.magnitude, columns), np.datetime64(calibration.epoch_utc, "ns"))
+    scan = scan_of(calibration, flight, magnitude_at)
+    return replace(calibration, clock=scan, sentences=(*calibration.sentences, scan.sentence()))
 
 
 def calibrate_against(
@@ -84,6 +104,10 @@ def _flight(telemetry: Telemetry, magnitude_tesla: np.ndarray, use: Sequence[str
 
 def _on_one_clock(flights: list[Flight]) -> list[Flight]:
     """The flights with seconds since the first one's epoch, since they share one reference time."""
-    epochs = np.array([f.epoch_utc for f in flights], dtype="datetime64[ns]")
-    later = (epochs - epochs[0]) / np.timedelta64(1, "s")
-    return [replace(f, seconds=f.seconds + s, epoch_utc=epochs[0]) for f, s in zip(flights, later, strict=True)]
+    return [_shifted(flight, np.datetime64(flights[0].epoch_utc, "ns")) for flight in flights]
+
+
+def _shifted(flight: Flight, epoch_utc: np.datetime64) -> Flight:
+    """The flight with seconds since another epoch."""
+    later_s = (np.datetime64(flight.epoch_utc, "ns") - epoch_utc) / np.timedelta64(1, "s")
+    return replace(flight, seconds=flight.seconds + later_s, epoch_utc=epoch_utc)

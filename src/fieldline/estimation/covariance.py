@@ -8,6 +8,8 @@ smoother has the same blocks. `coloured` false leaves the last three blocks alon
 
 from __future__ import annotations
 
+from math import sqrt
+
 from numba import njit
 
 from fieldline.frames.matrices import (
@@ -71,7 +73,7 @@ def step_forward(p, phi, psi, lam, fade, drive, noise, h, coloured):
 @njit(cache=True)
 def measurement_gain(p, h, r, coloured):
     """P H^T (three blocks) and S = H P H^T + R."""
-    aa, ar, rr, ac, rc, cc = p
+    aa, ar, _, ac, rc, cc = p
     ga = matmul_t(aa, h)
     gr = matmul_t(transpose(ar), h)
     gc = ZERO9
@@ -196,6 +198,19 @@ def transposed_gain(ka, kr, kc, va, vr, vc, coloured):
 def inverted(s):
     """S^-1, symmetric to rounding."""
     return symmetric(inverse(s))
+
+
+@njit(cache=True, error_model="numpy")
+def whitened(s, v):
+    """L^-1 v with L L^T = S: a vector whose covariance is S becomes one of covariance I."""
+    l00 = sqrt(s[0])
+    l10, l20 = s[3] / l00, s[6] / l00
+    l11 = sqrt(s[4] - l10 * l10)
+    l21 = (s[7] - l20 * l10) / l11
+    l22 = sqrt(s[8] - l20 * l20 - l21 * l21)
+    x = v[0] / l00
+    y = (v[1] - l10 * x) / l11
+    return (x, y, (v[2] - l20 * x - l21 * y) / l22)
 
 
 @njit(cache=True)

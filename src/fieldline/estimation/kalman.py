@@ -24,7 +24,7 @@ Valid while an update's correction is small against a radian: starts come from `
 
 from __future__ import annotations
 
-from math import exp, inf, isfinite, log, pi
+from math import exp, inf, isfinite, log, nan, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -61,22 +61,22 @@ def noise_matrix(w, body, noise):
 
 @njit(cache=True)
 def innovation(q, w, c, p, measured, reference, noise, coloured):
-    """Residual, h, gains, S^-1, NIS and log-likelihood of one vector; beyond the gate R is stretched to meet it."""
+    """Whitened residual, h, gains, S^-1 v, S^-1 and log-likelihood of one vector; beyond the gate R is stretched."""
     body = to_body(q, reference)
     h = skew(body)
     r = noise_matrix(w, body, noise)
     residual = sub(measured, add(body, c))
     ga, gr, gc, s = cov.measurement_gain(p, h, r, coloured)
-    s_inv = cov.inverted(s)
-    nis = dot(residual, matvec(s_inv, residual))
+    white = cov.whitened(s, residual)
+    nis = dot(white, white)
     cost = nis
     if nis > noise.gate:
         # an outlier moves the state no more than a sample at the gate; its cost grows with the logarithm (Student-like)
         cost = noise.gate * (1.0 + log(nis / noise.gate))
         s = matadd(s, matscale(nis / noise.gate - 1.0, r))
-        s_inv = cov.inverted(s)
+    s_inv = cov.inverted(s)
     log_likelihood = -0.5 * (cost + log(determinant(s)) + 3.0 * log(2.0 * pi))
-    return residual, h, ga, gr, gc, s_inv, nis, log_likelihood
+    return white, h, ga, gr, gc, matvec(s_inv, residual), s_inv, log_likelihood
 
 
 @njit(cache=True)
@@ -97,6 +97,15 @@ def _put_state(states, k, q, w, c):
 
 
 @njit(cache=True)
+def _moved(q, w, series, k, step, model):
+    """State and derivatives at row k from those a step before; the reference is that of the row before, where there is one."""
+    j = max(k - 1, 0)
+    # a gyro reads at the samples: the trapezium between them
+    gyro = scale(0.5, add(vec(series.gyro_b, j), vec(series.gyro_b, k)))
+    return propagate(q, w, gyro, vec(series.field_i, j), vec(series.pull_i, j), step, model)
+
+
+@njit(cache=True)
 def _fade(h, noise, coloured):
     """F of (3) and the variance that the coloured error gains over h."""
     if not coloured:
@@ -106,33 +115,30 @@ def _fade(h, noise, coloured):
 
 
 @njit(cache=True)
-def filter_forward(series, first, before, start, prior, noise, model, states, blocks, nis):
+def filter_forward(series, first, before, start, prior, noise, model, states, blocks, white):
     """Filter samples; returns the log-likelihood and leaves the last state and covariance in start and prior.
 
     series: see `estimation.series`, n rows. start (1, 10) and prior (1, 54) hold at the
-    first sample (first true) or at the time `before` [s], one step earlier. states (n, 10), blocks (n, 54) and nis (n,)
-    are filled where they have n rows; with no rows only the likelihood is wanted.
+    first sample (first true) or at the time `before` [s], one step earlier. states (n, 10) and blocks (n, 54) are filled
+    where they have n rows, and so is white (n, 3), the innovations whitened by their covariance, NaN where not used.
     """
-    seconds, field_b, field_i, pull_i, used = series
+    seconds, field_b, field_i, used = series.seconds, series.field_b, series.field_i, series.used
     n = seconds.shape[0]
-    keep = states.shape[0] == n
+    keep, report = states.shape[0] == n, white.shape[0] == n
     coloured = noise.coloured > 0.0
     q, w, c = _row_state(start, 0)
     p = cov.load(prior, 0)
     total = 0.0
     for k in range(n):
         if k > 0 or not first:
-            h = seconds[k] - (seconds[k - 1] if k > 0 else before)
-            q, w, phi, psi, lam = propagate(q, w, vec(field_i, max(k - 1, 0)), vec(pull_i, max(k - 1, 0)), h, model)
-            f, drive = _fade(h, noise, coloured)
+            step = seconds[k] - (seconds[k - 1] if k > 0 else before)
+            q, w, phi, psi, lam = _moved(q, w, series, k, step, model)
+            f, drive = _fade(step, noise, coloured)
             c = scale(f, c)
-            p = cov.step_forward(p, phi, psi, lam, f, drive, model.noise, h, coloured)
-        value = -1.0
+            p = cov.step_forward(p, phi, psi, lam, f, drive, model.noise, step, coloured)
+        whitened = (nan, nan, nan)
         if used[k]:
-            residual, hk, ga, gr, gc, s_inv, value, gained = innovation(
-                q, w, c, p, vec(field_b, k), vec(field_i, k), noise, coloured
-            )
-            v = matvec(s_inv, residual)
+            whitened, _, ga, gr, gc, v, s_inv, gained = innovation(q, w, c, p, vec(field_b, k), vec(field_i, k), noise, coloured)
             q = quat_unit(quat_mul(q, quat_exp(matvec(ga, v))))
             w = add(w, matvec(gr, v))
             if coloured:
@@ -144,7 +150,8 @@ def filter_forward(series, first, before, start, prior, noise, model, states, bl
         if keep:
             _put_state(states, k, q, w, c)
             cov.store(blocks, k, p)
-            nis[k] = value
+        if report:
+            put(white, k, whitened)
     _put_state(start, 0, q, w, c)
     cov.store(prior, 0, p)
     return total
@@ -157,7 +164,7 @@ def smooth_backward(series, first, before, start, prior, noise, model, states, b
     adjoint_v (9,) and adjoint_m (1, 54) hold l and L after the last row (zero at the record's end) and leave holding
     them before the first one.
     """
-    seconds, field_b, field_i, pull_i, used = series
+    seconds, field_b, field_i, used = series.seconds, series.field_b, series.field_i, series.used
     n = seconds.shape[0]
     coloured = noise.coloured > 0.0
     va = (adjoint_v[0], adjoint_v[1], adjoint_v[2])
@@ -176,23 +183,21 @@ def smooth_backward(series, first, before, start, prior, noise, model, states, b
         moves = k > 0 or not first
         phi, psi, lam, f = cov.IDENTITY, cov.ZERO9, cov.IDENTITY, 1.0
         if moves:
-            h = seconds[k] - (seconds[k - 1] if k > 0 else before)
-            q, w, phi, psi, lam = propagate(q, w, vec(field_i, max(k - 1, 0)), vec(pull_i, max(k - 1, 0)), h, model)
-            f, drive = _fade(h, noise, coloured)
+            step = seconds[k] - (seconds[k - 1] if k > 0 else before)
+            q, w, phi, psi, lam = _moved(q, w, series, k, step, model)
+            f, drive = _fade(step, noise, coloured)
             c = scale(f, c)
-            p = cov.step_forward(p, phi, psi, lam, f, drive, model.noise, h, coloured)
+            p = cov.step_forward(p, phi, psi, lam, f, drive, model.noise, step, coloured)
         ea, er, ec = cov.times(p_f, va, vr, vc, coloured)
         q_s = quat_unit(quat_mul(q_f, quat_exp(scale(-1.0, ea))))
         _put_state(states, k, q_s, sub(w_f, er), sub(c_f, ec))
         cov.store(blocks, k, cov.smoothed(p_f, m, coloured))
         if used[k]:
-            residual, hk, ga, gr, gc, s_inv, nis, gained = innovation(
-                q, w, c, p, vec(field_b, k), vec(field_i, k), noise, coloured
-            )
+            _, h, ga, gr, gc, v, s_inv, _ = innovation(q, w, c, p, vec(field_b, k), vec(field_i, k), noise, coloured)
             ka, kr, kc = matmul(ga, s_inv), matmul(gr, s_inv), matmul(gc, s_inv)
-            g = add(cov.transposed_gain(ka, kr, kc, va, vr, vc, coloured), matvec(s_inv, residual))
-            va, vc = cov.innovated(va, vc, hk, g)
-            m = cov.measured_adjoint(m, hk, ka, kr, kc, s_inv, coloured)
+            g = add(cov.transposed_gain(ka, kr, kc, va, vr, vc, coloured), v)
+            va, vc = cov.innovated(va, vc, h, g)
+            m = cov.measured_adjoint(m, h, ka, kr, kc, s_inv, coloured)
         if moves:
             va, vr, vc = cov.vectors_back(va, vr, vc, phi, psi, lam, f)
             m = cov.step_backward(m, phi, psi, lam, f, coloured)

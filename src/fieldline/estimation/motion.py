@@ -1,7 +1,7 @@
 """How attitude and rate move between two samples, with their derivatives: the filter's model of the satellite.
 
     q+ = q exp(theta / 2)                    e+  = Phi e + Psi dw                                       (1)
-    w+ = w             (random walk)         dw+ = dw
+    w+ = w             (random walk)         dw+ = dw        (on a gyro's rate u: the body turns by u + w)
     w+ = Euler's       (rigid body)          dw+ = Lam dw
 
 e is the error's rotation vector in body axes, q_true = q exp(e / 2). For a constant rate Phi = A(exp(w h / 2)) and
@@ -72,10 +72,10 @@ def rate_jacobian(w, model):
 
 
 @njit(cache=True)
-def propagate(q, w, field_i, pull_i, h, model):
-    """q, w after h [s] (negative runs backwards) with Phi, Psi, Lam of (1); field and pull [1/s] feed the torques."""
+def propagate(q, w, gyro, field_i, pull_i, h, model):
+    """q, w after h [s] (negative runs backwards) with Phi, Psi, Lam of (1); gyro is u, field and pull feed the torques."""
     if not model.rigid:
-        half = quat_exp(scale(0.5 * h, w))
+        half = quat_exp(scale(0.5 * h, add(w, gyro)))
         full = quat_mul(half, half)
         # Simpson's rule on A(exp(w s)): good to (w h)^4 / 2880, 1e-4 at 46 deg a step, ample for a covariance
         psi = matscale(h / 6.0, matadd(matadd(IDENTITY, matscale(4.0, dcm(half))), dcm(full)))

@@ -69,4 +69,6 @@ def settle(series: Series, contender: Contender, floor: float) -> Contender:
     """The contender with noise and rate noise tuned by likelihood, smoothed again from its own start."""
     before = contender.smoothed
     noise, model, _ = tune(series, before.start, before.noise, before.model, floor)
-    return replace(contender, smoothed=smooth(series, before.start, noise, model, passes=2))
+    after = smooth(series, before.start, noise, model, passes=2)
+    # the second pass starts elsewhere than the tuning did; where that lost what the tuning won, the tuning is dropped
+    return replace(contender, smoothed=after) if after.log_likelihood > before.log_likelihood else contender

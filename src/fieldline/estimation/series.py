@@ -15,16 +15,20 @@ from fieldline.constants import EARTH_GM_M3_S2
 
 
 class Series(NamedTuple):
-    """seconds (n,), field_b (n, 3) [T] measured, field_i (n, 3) [T] reference, pull_i (n, 3) [1/s], used (n,) bool."""
+    """seconds (n,), field_b (n, 3) [T] measured, field_i (n, 3) [T] reference, pull_i (n, 3) [1/s], used (n,) bool.
+
+    gyro_b (n, 3) [rad/s]: a gyro's rate that the random walk rides on (then the walk is the gyro's error), else zeros.
+    """
 
     seconds: np.ndarray
     field_b: np.ndarray
     field_i: np.ndarray
     pull_i: np.ndarray
     used: np.ndarray
+    gyro_b: np.ndarray
 
 
-def make_series(seconds, field_b, field_i, position_i, used) -> Series:
+def make_series(seconds, field_b, field_i, position_i, used, gyro_b=None) -> Series:
     """The record with (1), contiguous; samples that are not finite are not used (and hold zeros, not NaN)."""
     field_b = np.asarray(field_b, dtype=float)
     finite = np.isfinite(field_b).all(axis=1)
@@ -36,6 +40,7 @@ def make_series(seconds, field_b, field_i, position_i, used) -> Series:
         np.ascontiguousarray(field_i, dtype=float),
         np.ascontiguousarray(pull_i),
         np.ascontiguousarray(used & finite),
+        np.zeros_like(field_b) if gyro_b is None else np.ascontiguousarray(np.nan_to_num(gyro_b), dtype=float),
     )
 
 

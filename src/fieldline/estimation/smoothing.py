@@ -16,7 +16,7 @@ from fieldline.estimation.kalman import CHUNK, STATES, Noise, filter_forward, pr
 from fieldline.estimation.motion import RateModel
 from fieldline.estimation.series import Series, part
 
-EMPTY_STATES, EMPTY_BLOCKS, EMPTY_NIS = np.empty((0, STATES)), np.empty((0, cov.BLOCKS)), np.empty(0)
+EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE = np.empty((0, STATES)), np.empty((0, cov.BLOCKS)), np.empty((0, 3))
 FIRST_ATTITUDE_STD = 1.0  # [rad] the first sample's attitude is free
 DIAGONAL = np.array([0, 4, 8])
 
@@ -26,8 +26,8 @@ class Smoothed:
     """Smoothed states of an arc.
 
     q_bi (n, 4), omega_b (n, 3) [rad/s], slow_b (n, 3) [T] coloured error of the measurement; attitude_covariance_b
-    (n, 3, 3) [rad2], rate_std_b (n, 3) [rad/s]; nis (n,) of the filter's innovations, negative where not used;
-    log_likelihood of the innovations; noise and model that it was run with.
+    (n, 3, 3) [rad2], rate_std_b (n, 3) [rad/s]; white (n, 3): the filter's innovations whitened by their covariance, NaN
+    where not used; log_likelihood of the innovations; noise and model that it was run with.
     """
 
     q_bi: np.ndarray
@@ -35,7 +35,7 @@ class Smoothed:
     slow_b: np.ndarray
     attitude_covariance_b: np.ndarray
     rate_std_b: np.ndarray
-    nis: np.ndarray
+    white: np.ndarray
     log_likelihood: float
     noise: Noise
     model: RateModel
@@ -44,6 +44,11 @@ class Smoothed:
     def start(self) -> np.ndarray:
         """(7,) attitude and rate at the first sample."""
         return np.concatenate([self.q_bi[0], self.omega_b[0]])
+
+    @property
+    def nis(self) -> np.ndarray:
+        """(n,) normalised innovation squared, NaN where not used; its expectation is 3."""
+        return (self.white**2).sum(axis=1)
 
     def predicted(self, series: Series) -> np.ndarray:
         """(n, 3) [T] the reference field in the estimated body axes."""
@@ -66,7 +71,15 @@ def rate_prior(start: np.ndarray) -> float:
 def log_likelihood(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> float:
     """Log-likelihood of an arc's innovations from a start (7,), the first attitude free."""
     row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
-    return filter_forward(series, True, 0.0, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_NIS)
+    return filter_forward(series, True, 0.0, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
+
+
+def innovations(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> tuple[np.ndarray, float]:
+    """Whitened innovations (n, 3) of an arc and their log-likelihood, from a start (7,), the first attitude free."""
+    row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
+    white = np.empty_like(series.field_b)
+    total = filter_forward(series, True, 0.0, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, white)
+    return white, total
 
 
 def state_at_first(series: Series, row: int, state: np.ndarray, noise: Noise, model: RateModel) -> np.ndarray:
@@ -75,7 +88,7 @@ def state_at_first(series: Series, row: int, state: np.ndarray, noise: Noise, mo
         return state
     back = part(series, slice(row, None, -1))
     start, prior = _start_row(state), prior_blocks(0.3, rate_prior(state), noise.coloured)
-    filter_forward(back, True, 0.0, start, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_NIS)
+    filter_forward(back, True, 0.0, start, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
     return start[0, :7].copy()
 
 
@@ -97,7 +110,7 @@ def _smooth_once(series: Series, start: np.ndarray, noise: Noise, model: RateMod
         if k < len(borders) - 1:
             rows = part(series, slice(first, first + CHUNK))
             before = float(series.seconds[first - 1]) if first else 0.0
-            total += filter_forward(rows, first == 0, before, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_NIS)
+            total += filter_forward(rows, first == 0, before, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
     out = _Outputs(n)
     adjoint_v, adjoint_m = np.zeros(9), np.zeros((1, cov.BLOCKS))
     for k in range(len(borders) - 1, -1, -1):
@@ -105,12 +118,12 @@ def _smooth_once(series: Series, start: np.ndarray, noise: Noise, model: RateMod
         rows = part(series, slice(first, first + CHUNK))
         before = float(series.seconds[first - 1]) if first else 0.0
         count = len(rows.seconds)
-        states, blocks, nis = np.empty((count, STATES)), np.empty((count, cov.BLOCKS)), np.empty(count)
+        states, blocks, white = np.empty((count, STATES)), np.empty((count, cov.BLOCKS)), np.empty((count, 3))
         row, prior = saved[k]
-        gained = filter_forward(rows, first == 0, before, row.copy(), prior.copy(), noise, model, states, blocks, nis)
+        gained = filter_forward(rows, first == 0, before, row.copy(), prior.copy(), noise, model, states, blocks, white)
         total += gained if k == len(borders) - 1 else 0.0
         smooth_backward(rows, first == 0, before, row, prior, noise, model, states, blocks, adjoint_v, adjoint_m)
-        out.put(slice(first, first + count), states, blocks, nis)
+        out.put(slice(first, first + count), states, blocks, white)
         if progress is not None:
             progress(n - first, n)
     return out.result(total, noise, model)
@@ -123,14 +136,14 @@ class _Outputs:
         self.states = np.empty((n, STATES))
         self.attitude = np.empty((n, 9))
         self.rate_var = np.empty((n, 3))
-        self.nis = np.empty(n)
+        self.white = np.empty((n, 3))
 
-    def put(self, rows: slice, states, blocks, nis) -> None:
+    def put(self, rows: slice, states, blocks, white) -> None:
         """Store one chunk."""
         self.states[rows] = states
         self.attitude[rows] = blocks[:, :9]
         self.rate_var[rows] = blocks[:, 18 + DIAGONAL]
-        self.nis[rows] = nis
+        self.white[rows] = white
 
     def result(self, total: float, noise: Noise, model: RateModel) -> Smoothed:
         """The finished record; rounding may leave a variance below zero where the prior was 1e10 times wider."""
@@ -140,7 +153,7 @@ class _Outputs:
             slow_b=self.states[:, 7:10],
             attitude_covariance_b=self.attitude.reshape(-1, 3, 3),
             rate_std_b=np.sqrt(np.maximum(self.rate_var, 0.0)),
-            nis=self.nis,
+            white=self.white,
             log_likelihood=total,
             noise=noise,
             model=model,

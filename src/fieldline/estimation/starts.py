@@ -117,7 +117,9 @@ def _stems(series: Series, centre: int, noise_tesla: float, inertia, rigid: bool
     rows_used = first.used
     if rows_used.sum() < 5:
         return []
-    peaks = rate_peaks(first.seconds[rows_used], first.field_b[rows_used], most=5)
+    peaks = [(np.zeros(3), 1.0)]
+    if not series.gyro_b.any():
+        peaks = rate_peaks(first.seconds[rows_used], first.field_b[rows_used], most=5)
     stems = []
     for rate, _ in peaks:
         anchor_field = series.field_b[centre] if series.used[centre] else first.field_b[rows_used][0]
@@ -145,7 +147,7 @@ def _span(n: int, centre: int, rows: int) -> tuple[int, int]:
 
 def _fit(series: Series, centre: int, rows: int, motion: Motion, noise_tesla: float) -> Motion:
     """The motion fitted to a window; its state stays at `centre`."""
-    rows_near, anchor = window(series, centre, rows, float(np.linalg.norm(motion.omega_b)))
+    rows_near, anchor = window(series, centre, rows, float(np.linalg.norm(motion.omega_b + series.gyro_b[centre])))
     return fit_window(rows_near, replace(motion, anchor=anchor), _noise(rows_near, noise_tesla), iterations=12)
 
 

@@ -1,9 +1,10 @@
 """How noisy the magnetometer is and how freely the rate wanders, read from the data.
 
 The likelihood of the filter's innovations is climbed over the logarithms of white noise, slow error, its correlation time
-and the rate's noise. The magnitude guards the climb: what it leaves, no attitude can explain, so the white noise and the
-slow error together are not allowed below its residual. Without that floor a likelihood alone lets the rate follow every
-error of a magnetically dirty body.                                                                          (1)
+and the rate's noise. The magnitude guards the climb: what it leaves, no attitude can explain, and errors do not know which way
+the field points, so the white noise and the slow error together must be as large as its residual, within a quarter. (1)
+Without (1) a likelihood alone lets the rate follow every error of a magnetically dirty body, or the slow error take over
+what is motion.
 """
 
 from __future__ import annotations
@@ -12,9 +13,10 @@ import numpy as np
 
 from fieldline.estimation.kalman import Noise
 from fieldline.estimation.motion import RateModel
-from fieldline.estimation.series import Series, part
+from fieldline.estimation.series import Series
 from fieldline.estimation.smoothing import log_likelihood
 
+LARGEST_EXCESS = np.log(1.25)  # of the noise over the magnitude's residual
 LONGEST = 20_000  # rows that a tuning reads: the middle of a longer arc
 RATE_NOISES = np.geomspace(1e-7, 1e-2, 11)  # [rad/s/sqrt(s)] first look, from a quiet boom to a thruster
 
@@ -27,13 +29,11 @@ def magnitude_noise(series: Series) -> float:
     return float(max(np.sqrt(np.mean(np.clip(left, -5 * inner, 5 * inner) ** 2)), 1e-9))
 
 
-def middle(series: Series) -> Series:
+def middle_rows(series: Series) -> slice:
     """At most LONGEST rows from the middle of an arc."""
     n = len(series.seconds)
-    if n <= LONGEST:
-        return series
-    first = (n - LONGEST) // 2
-    return part(series, slice(first, first + LONGEST))
+    first = max(0, (n - LONGEST) // 2)
+    return slice(first, min(n, first + LONGEST))
 
 
 def best_rate_noise(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> RateModel:
@@ -56,11 +56,12 @@ def tune(series: Series, start: np.ndarray, noise: Noise, model: RateModel, floo
     def cost(x):
         trial, rate = decode(x)
         total = -_finite(log_likelihood(series, start, trial, rate))
-        short = np.log(floor / np.hypot(trial.white, trial.coloured))
+        size = np.log(np.hypot(trial.white, trial.coloured) / floor)
+        off = max(-size, 0.0) + max(size - LARGEST_EXCESS, 0.0)
         low, high = _bounds(floor)
         outside = np.sum((x - np.clip(x, low, high)) ** 2)
         # a floor that is missed by a tenth costs as much as the likelihood can gain over a few hundred samples
-        return total + 1e4 * max(short, 0.0) ** 2 + 1e3 * outside
+        return total + 1e4 * off**2 + 1e3 * outside
 
     x = np.log([noise.white, max(noise.coloured, 0.1 * floor), noise.coloured_time, model.noise])
     simplex = x + np.vstack([np.zeros(4), np.diag([0.5, 0.7, 1.0, 1.2])])

@@ -1,0 +1,175 @@
+"""From a calibrated arc to the motion that explains it best, with the rivals that lost and by how much.
+
+    starts (both rate models) -> filter over the whole arc -> likeliest of each kind -> noise tuned -> constants polished
+    with the attitude -> noise tuned again -> smoothed -> covariance widened by what the constants and the field model hide
+
+Every choice is by the likelihood of the innovations; nothing here knows what satellite it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fieldline.errors import NoEstimateError
+from fieldline.estimation.batch import Motion
+from fieldline.estimation.kalman import Noise
+from fieldline.estimation.natanson.candidates import natanson_candidates
+from fieldline.estimation.polish import Constants, gather_constants, polish
+from fieldline.estimation.refine import Contender, contend, settle
+from fieldline.estimation.series import Series, part
+from fieldline.estimation.smoothing import Smoothed, smooth
+from fieldline.estimation.starts import Candidate, find_starts
+from fieldline.estimation.systematics import widen, widen_by_field_model
+from fieldline.estimation.tuning import LONGEST, magnitude_noise, middle_rows, tune
+
+SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
+POLISH_ROUNDS = 3
+BODY_COUNT = 8  # numbers that a free rigid body has and a random walk has not: half of ln n each in its favour
+
+Progress = Callable[[str, float, float, str], None]
+SeriesOf = Callable[[np.ndarray], Series]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Solution:
+    """The motion of an arc: `smoothed` with its widened covariance, constants, all contenders and the noise floor."""
+
+    smoothed: Smoothed
+    constants: Constants
+    contenders: tuple[Contender, ...]
+    winner: Contender
+    floor_tesla: float
+    candidates_tried: int
+    remarks: tuple[str, ...]
+    series: Series
+
+
+def solve(
+    series_of: SeriesOf,
+    calibration_values: np.ndarray | None,
+    calibration_covariance: np.ndarray | None,
+    *,
+    inertia=None,
+    progress: Progress,
+    seed: int,
+) -> Solution:
+    """The motion of an arc. series_of(calibration numbers) is the arc calibrated with them; None: nothing to recalibrate.
+
+    Errors: NoEstimateError where no start survives the filter.
+    """
+    series = series_of(calibration_values)
+    floor = magnitude_noise(series)
+    noise = Noise(white=floor, coloured=0.5 * floor, coloured_time=SLOW_ERROR_TIME)
+    contenders, tried, remarks = _contenders(series, noise, floor, inertia, progress)
+    settled = _settled(series, contenders, floor)
+    winner = settled[0]
+    progress("refine", 0.4, 1.0, winner.candidate.words)
+    smoothed, constants = _polished(series_of, series, winner, calibration_values, calibration_covariance, floor)
+    series = series_of(_calibration_part(constants, calibration_values))
+    progress("refine", 0.7, 1.0, "uncertainty")
+    smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=2)
+    smoothed = widen_by_field_model(widen(smoothed, constants, series_of), series, seed)
+    progress("refine", 1.0, 1.0, "")
+    return Solution(
+        smoothed=smoothed,
+        constants=constants,
+        contenders=tuple(settled + [c for c in contenders if all(c.candidate is not s.candidate for s in settled)]),
+        winner=winner,
+        floor_tesla=floor,
+        candidates_tried=tried,
+        remarks=tuple(remarks),
+        series=series,
+    )
+
+
+def _calibration_part(constants: Constants, otherwise):
+    return constants.values[: constants.calibrated] if constants.calibrated else otherwise
+
+
+def _contenders(series: Series, noise: Noise, floor: float, inertia, progress) -> tuple[list[Contender], int, list[str]]:
+    """The likeliest contenders of both rate models, and how many starts were tried."""
+    from_roots, remarks = natanson_starts(series, floor)
+    contenders: list[Contender] = []
+    tried = 0
+    kinds = (False,) if series.gyro_b.any() else (False, True)
+    for k, rigid in enumerate(kinds):
+        progress("first guess", k, len(kinds), "rigid body" if rigid else "random walk")
+        starts = find_starts(series, floor, inertia=inertia, rigid=rigid) + ([] if rigid else from_roots)
+        tried += len(starts)
+        contenders += contend(series, starts, noise, floor)
+    progress("first guess", len(kinds), len(kinds), f"{len(contenders)} of {tried} candidates kept")
+    if not contenders:
+        raise NoEstimateError(
+            "no motion was found that the filter could follow over this arc: the field seen by the sensor does not look like "
+            "the model's along this orbit in any attitude. Check that orbit, time (UTC) and calibration belong together."
+        )
+    return sorted(contenders, key=lambda c: -c.log_likelihood), tried, remarks
+
+
+def natanson_starts(series: Series, noise_tesla: float) -> tuple[list[Candidate], list[str]]:
+    """Starts from smoothed derivatives (Natanson 1990), all roots; or why there are none."""
+    rows = series.used
+    found = natanson_candidates(series.seconds[rows], series.field_b[rows], series.field_i[rows], noise_tesla)
+    index = np.flatnonzero(rows)
+    starts = [
+        Candidate(
+            motion=Motion(q_bi=np.asarray(root.q_bi), omega_b=np.asarray(root.omega_b), anchor=int(index[root.index])),
+            row=int(index[root.index]),
+            rows=1,
+            words=f"derivatives of the field, loss {1e9 * float(root.loss):.0f} nT",
+        )
+        for root in found
+    ]
+    reason = getattr(found, "reason", "")
+    return starts, [f"smoothed derivatives gave no start: {reason}"] if not starts and reason else []
+
+
+def _settled(series: Series, contenders: list[Contender], floor: float) -> list[Contender]:
+    """The best of each rate model with its noise tuned, the likelier first."""
+    settled = []
+    for rigid in (False, True):
+        kind = [c for c in contenders if c.smoothed.model.rigid == rigid]
+        if kind:
+            settled.append(_settle_on_part(series, kind[0], floor))
+    return sorted(settled, key=lambda c: -_penalised(c, series))
+
+
+def _settle_on_part(series: Series, contender: Contender, floor: float) -> Contender:
+    """`settle`; a long arc is tuned on its middle, then smoothed whole."""
+    if len(series.seconds) <= LONGEST:
+        return settle(series, contender, floor)
+    rows = middle_rows(series)
+    state = np.concatenate([contender.smoothed.q_bi[rows.start], contender.smoothed.omega_b[rows.start]])
+    noise, model, _ = tune(part(series, rows), state, contender.smoothed.noise, contender.smoothed.model, floor)
+    return replace(contender, smoothed=smooth(series, contender.smoothed.start, noise, model, passes=2))
+
+
+def _penalised(contender: Contender, series: Series) -> float:
+    """Log-likelihood less half ln n for each number that the rigid body fitted besides the state."""
+    free = BODY_COUNT if contender.candidate.motion.shape is not None else 0
+    return contender.log_likelihood - 0.5 * free * np.log(max(series.used.sum(), 2))
+
+
+def _polished(series_of: SeriesOf, series: Series, winner: Contender, values, covariance, floor: float):
+    """Constants and noise, in turn, as long as the likelihood grows by more than a hair."""
+    motion, smoothed = winner.candidate.motion, winner.smoothed
+    rigid = smoothed.model.rigid
+    dipole = (np.zeros(3) if motion.dipole is None else motion.dipole) if rigid else None
+    constants = gather_constants(values, covariance, motion.shape if rigid else None, dipole, motion.inertia)
+    if constants.values.size == 0:
+        return smoothed, constants
+    rows = middle_rows(series)
+    start = np.concatenate([smoothed.q_bi[rows.start], smoothed.omega_b[rows.start]])
+    noise, like = smoothed.noise, smoothed.model
+    for _ in range(POLISH_ROUNDS):
+        constants, gained = polish(constants, lambda v: part(series_of(v), rows), start, noise, like)
+        arc = part(series_of(constants.values[: constants.calibrated]), rows)
+        noise, like, _ = tune(arc, start, noise, constants.model(like), min(floor, magnitude_noise(arc)))
+        start = smooth(arc, start, noise, like).start
+        if gained < 2.0:
+            break
+    first = smoothed.start if rows.start else start
+    return replace(smoothed, noise=noise, model=like, q_bi=first[None, :4], omega_b=first[None, 4:]), constants
