@@ -89,7 +89,7 @@ def run(job: Job) -> int:
     with progress_on_stderr(job.quiet) as progress:
         telemetry = read_flight(job.telemetry, job.source, progress)
         orbit = orbit_for(telemetry, job.source, progress)
-        estimate = _estimate(telemetry, orbit, job, calibration, inertia, progress)
+        estimate = _estimate(telemetry, orbit, job, _chosen(calibration, telemetry), inertia, progress)
         written = write_estimate(estimate, paths, progress)
         if job.figures:
             from fieldline.report import write_figures
@@ -162,17 +162,25 @@ def _sensors(use: list[str] | None) -> tuple[str, ...]:
 
 
 def read_calibration(text: str) -> Any:
-    """A word that the estimator knows, or the Calibration of a file."""
+    """A word that the estimator knows, or the calibrations of a file."""
     if text in CALIBRATIONS:
         return text
-    path = Path(text)
-    if not path.is_file():
+    if not Path(text).is_file():
         raise InputError(
             f'--calibration "{text}" is neither a file nor one of {", ".join(CALIBRATIONS)}; {nearest(text, CALIBRATIONS)}'
         )
-    from fieldline.estimation.calibration import Calibration
+    from fieldline.estimation.calibration_file import read_calibrations
 
-    return Calibration.from_json(path.read_text(encoding="utf-8"))
+    return read_calibrations(text)
+
+
+def _chosen(calibration: Any, telemetry: Any) -> Any:
+    """The word, or the calibration of the file that was found nearest in time to the telemetry."""
+    if isinstance(calibration, str):
+        return calibration
+    from fieldline.estimation.calibration_file import nearest_in_time
+
+    return nearest_in_time(calibration, telemetry.time_utc)
 
 
 def parse_inertia(text: str | None) -> Any:

@@ -27,6 +27,9 @@ def calibrate(
     use: Annotated[
         list[str] | None, typer.Option(help="Columns that terms may use: temperature, dipole, current.", show_default=False)
     ] = None,
+    clock_scan: Annotated[
+        bool, typer.Option("--clock-scan", help="Also tell whether shifted time stamps would fit better; nothing is shifted.")
+    ] = False,
     mapping: options.Mapping = None,
     mag_columns: options.MagColumns = None,
     time_column: options.TimeColumn = None,
@@ -49,11 +52,16 @@ def calibrate(
     )  # fmt: skip
     paths = targets(stem_of(out, telemetry[0], "calibration"), ENDINGS, [*telemetry, orbit, mapping, eop])
     columns = tuple(name.strip() for one in use or () for name in one.split(","))
+    from fieldline.estimation.calibrate import calibrate as calibrated
+
     with progress_on_stderr(quiet) as progress:
         flown = [read_flight(path, source, progress) for path in telemetry]
         orbits = [orbit_for(one, source, progress) for one in flown]
-        found, flights = _calibrated(flown, orbits, model, calibration, columns, progress)
-        settings = {"model": model, "calibration": calibration, "use": list(columns)}
+        progress("calibration", 0, 1)
+        found: Any = calibrated(flown, orbits, model=model, calibration=calibration, clock_scan=clock_scan, use=columns)
+        progress("calibration", 1, 1, f"{found[0].model}, {', '.join(f'{1e9 * c.residual_rms_tesla:.0f}' for c in found)} nT RMS")
+        flights = [_shown(c, t, o, model) for c, t, o in zip(found, flown, orbits, strict=True)]
+        settings = {"model": model, "calibration": calibration, "clock_scan": clock_scan, "use": list(columns)}
         written = _write(found, flights, settings, paths)
     summaries = [flight.summary for flight in flights]
     if as_json:
@@ -65,28 +73,16 @@ def calibrate(
     return 0
 
 
-def _calibrated(
-    flown: list, orbits: list, model: str, calibration: str, columns: tuple[str, ...], progress: Any
-) -> tuple[tuple, list]:
-    """The calibration of each file, and what the report shows of it."""
-    from fieldline.estimation.calibrate import calibrate_against
-    from fieldline.estimation.reference import reference_along_orbit
-
-    progress("calibration", 0, 1)
-    references = [reference_along_orbit(t.time_utc, o, model) for t, o in zip(flown, orbits, strict=True)]
-    found = calibrate_against(flown, references, calibration=calibration, use=columns)
-    progress("calibration", 1, 1, f"{found[0].model}, {', '.join(f'{1e9 * c.residual_rms_tesla:.0f}' for c in found)} nT RMS")
-    return found, [_shown(c, t, r) for c, t, r in zip(found, flown, references, strict=True)]
-
-
-def _shown(calibration: Any, telemetry: Any, reference: Any) -> Any:
+def _shown(calibration: Any, telemetry: Any, orbit: Any, model: str) -> Any:
     """A flight as the report takes it, with the gain's knots on the flight's own clock."""
     import numpy as np
 
     from fieldline.environment import eclipse
+    from fieldline.estimation.reference import reference_along_orbit
     from fieldline.report.calibration_report import CalibratedFlight
     from fieldline.report.record import dark_spells
 
+    reference = reference_along_orbit(telemetry.time_utc, orbit, model)
     field_b = calibration.apply(
         telemetry.seconds,
         telemetry.field_s,
@@ -98,6 +94,9 @@ def _shown(calibration: Any, telemetry: Any, reference: Any) -> Any:
     later_s = float((telemetry.epoch_utc - calibration.epoch_utc) / np.timedelta64(1, "s"))
     summary = calibration.summary()
     summary["gain_knots_s"] = [knot - later_s for knot in summary["gain_knots_s"]]
+    if summary["gain_knots_s"]:
+        curve_s = np.linspace(summary["gain_knots_s"][0], summary["gain_knots_s"][-1], 300)
+        summary |= {"gain_curve_s": curve_s.tolist(), "gain_curve": calibration.gain(curve_s + later_s).tolist()}
     return CalibratedFlight(
         name=telemetry.name,
         time_utc=telemetry.time_utc,
@@ -114,7 +113,7 @@ def _shown(calibration: Any, telemetry: Any, reference: Any) -> Any:
 def _write(found: tuple, flights: list, settings: dict[str, Any], paths: dict[str, Path]) -> list[Path]:
     """STEM.json and STEM.html, together."""
     from fieldline import __version__
-    from fieldline.estimation.calibration import calibrations_to_json
+    from fieldline.estimation.calibration_file import calibrations_to_json
     from fieldline.files import write_together
     from fieldline.report.calibration_report import calibration_html
 

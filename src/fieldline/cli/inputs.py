@@ -95,6 +95,6 @@ def _span(telemetry: Any) -> str:
 def _orbit_words(orbit: Any, time_utc: np.ndarray) -> str:
     """TLE 52191, age 0.2 d."""
     about = orbit.describe(time_utc)
-    age = about.get("age_days")
+    age = about.get("age_days")  # least and greatest, for element sets alone
     name = about.get("name") or about.get("norad_id") or ""
-    return f"{about.get('kind', 'orbit')} {name}" + (f", age {float(age):.1f} d" if isinstance(age, int | float) else "")
+    return f"{about.get('kind', 'orbit')} {name}" + (f", age {max(age):.1f} d" if age else "")

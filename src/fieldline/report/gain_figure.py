@@ -11,9 +11,10 @@ from fieldline.report.theme import AXIS_COLOURS, INK, Picture, panels
 
 
 def gain_picture(calibration: dict[str, Any], start_utc: np.datetime64, dark: list[tuple[float, float]]) -> Picture | None:
-    """Gain against time through its knots, with eclipses shaded; none where the calibration has no gain.
+    """Gain against time, with eclipses shaded; none where the calibration has no gain.
 
-    calibration : its summary, with `gain_knots_s` and `gain_values`.   dark : (start, stop) [s] of each eclipse.
+    calibration : its summary, with `gain_knots_s` and `gain_values`, and `gain_curve_s` and `gain_curve` where the course
+    between the knots is known.        dark : (start, stop) [s] of each eclipse.
     """
     knots, values = (np.asarray(calibration.get(key) or [], dtype=float) for key in ("gain_knots_s", "gain_values"))
     if len(knots) < 2 or len(knots) != len(values):
@@ -23,8 +24,10 @@ def gain_picture(calibration: dict[str, Any], start_utc: np.datetime64, dark: li
     one = axes[0, 0]
     for start, stop in dark:
         one.axvspan(start / clock.unit_s, stop / clock.unit_s, color=INK, alpha=0.08, linewidth=0)
-    fine = np.linspace(knots[0], knots[-1], 400)
-    one.plot(fine / clock.unit_s, _through(knots, values, fine), color=AXIS_COLOURS[0], linewidth=1.5)
+    curve_s, curve = (np.asarray(calibration.get(key) or [], dtype=float) for key in ("gain_curve_s", "gain_curve"))
+    if len(curve) < 2:
+        curve_s, curve = knots, values
+    one.plot(curve_s / clock.unit_s, curve, color=AXIS_COLOURS[0], linewidth=1.5)
     one.plot(knots / clock.unit_s, values, color=AXIS_COLOURS[0], linestyle="none", marker="o", markersize=4)
     one.axhline(1.0, color=INK, linewidth=0.8, linestyle=(0, (4, 2.5)))
     one.set_xlabel(clock.label)
@@ -38,12 +41,3 @@ def gain_picture(calibration: dict[str, Any], start_utc: np.datetime64, dark: li
         f"Gain of the magnetometer over time, between {values.min():.3f} and {values.max():.3f}.",
         figure,
     )
-
-
-def _through(knots: np.ndarray, values: np.ndarray, fine: np.ndarray) -> np.ndarray:
-    """A cubic spline through the knots, or straight lines where there are too few."""
-    if len(knots) < 4:
-        return np.interp(fine, knots, values)
-    from scipy.interpolate import CubicSpline
-
-    return CubicSpline(knots, values)(fine)

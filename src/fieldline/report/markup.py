@@ -32,7 +32,8 @@ def number(value: float, digits: int = 6) -> str:
         shown = f"{value:,.0f}"
     else:
         whole = len(str(int(size))) if size >= 1 else 0
-        shown = f"{value:,.{digits - whole}f}".rstrip("0").rstrip(".") if whole else f"{value:.{digits}g}"
+        shown = f"{value:,.{digits - whole}f}" if whole else f"{value:.{digits}g}"
+        shown = shown.rstrip("0").rstrip(".") if "." in shown else shown
     return (shown.replace(",", "") if size < 1e4 else shown).replace("-", "−")
 
 

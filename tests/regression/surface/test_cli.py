@@ -242,4 +242,3 @@ def test_the_demo_makes_its_folder(asked, tmp_path, capsys):
     assert main(["demo"]) == 0
     assert "suchai3_2023-08-24.html" in visible(tmp_path / "fieldline-demo")
     assert f"open {tmp_path / 'fieldline-demo' / 'suchai3_2023-08-24'}.html" in capsys.readouterr().out
-

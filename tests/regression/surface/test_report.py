@@ -9,6 +9,7 @@ import pytest
 from fieldline.errors import InputError
 from fieldline.report import report_html, write_figures, write_report
 from fieldline.report.calibration_report import CalibratedFlight, calibration_html
+from fieldline.report.markup import number
 
 MOST_BYTES = 5_000_000
 
@@ -135,3 +136,22 @@ def test_the_report_on_a_calibration_shows_every_flight(estimate):
     assert html.count("<figure>") == 4
     assert "bias (99.80, -30.10, -28.60) ± 0.12 µT, leaves 612, 612 nT RMS" in html
     assert "a.csv" in html and "b.csv" in html
+
+
+@pytest.mark.parametrize(
+    "value, digits, shown",
+    [
+        (779.947, 3, "780"),
+        (2023.65, 6, "2023.65"),
+        (1043.2, 3, "1043"),
+        (76366.27, 3, "76,366"),
+        (-0.02, 3, "−0.02"),
+        (100.0, 3, "100"),
+        (1.5e-7, 3, "1.5e−07"),
+        (0.0, 3, "0"),
+        (float("nan"), 3, "–"),
+        (float("inf"), 3, "inf"),
+    ],
+)
+def test_numbers_as_they_are_read(value, digits, shown):
+    assert number(value, digits) == shown
