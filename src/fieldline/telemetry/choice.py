@@ -187,18 +187,18 @@ def _find_magnetometer(source: Source, found: Sequence[Column]) -> tuple[Column,
         raise InputError(
             f'"{source.path}": the magnetometer has no {" and no ".join(missing)} axis; '
             f"found {have} among: {listed(source.names)}. "
-            "All three axes are needed; name them with --mag bx,by,bz if they go by other names."
+            "All three axes are needed; name them with --mag-columns bx,by,bz if they go by other names."
         )
     raise InputError(
         f'"{source.path}" has no magnetometer that is recognised among: {listed(source.names)}. '
-        "Name its columns with --mag bx,by,bz (and --unit nT), or in a mapping; "
+        "Name its columns with --mag-columns bx,by,bz (and --unit nT), or in a mapping; "
         "recognised names are such as mag_x_nT, Bx [uT], B_VFM."
     )
 
 
 def _ask(groups) -> str:
     """The question which of several instruments to take."""
-    choices = "; ".join("--mag " + ",".join(axes[axis][0].name for axis in AXES) for axes in groups.values())
+    choices = "; ".join("--mag-columns " + ",".join(axes[axis][0].name for axis in AXES) for axes in groups.values())
     return f"Say which to use: {choices}."
 
 

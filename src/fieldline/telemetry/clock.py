@@ -37,7 +37,7 @@ _UNIT_WORDS |= {"nsec": "ns", "nanos": "ns", "nanoseconds": "ns"}
 FIRST, LAST = np.datetime64("1957-10-04", "ns"), np.datetime64("2100-01-01", "ns")
 _LOCAL_ADVICE = (
     "Attitude needs UTC: convert the column (an hour of error turns the field along the orbit by 240 degrees), "
-    "write the offset into each stamp (2023-08-24T11:44:09-03:00), or name another column with --time."
+    "write the offset into each stamp (2023-08-24T11:44:09-03:00), or name another column with --time-column."
 )
 
 
@@ -99,7 +99,7 @@ def find_time(path, names: Sequence[str], units, peek, *, told: bool = False) ->
     if not good:
         raise InputError(
             f'"{path}" has no time column that is recognised among: {listed(names)}. '
-            "Name it with --time, or in a mapping ([columns] time = …); "
+            "Name it with --time-column, or in a mapping ([columns] time = …); "
             "known names: time_utc, utc, timestamp, unix_s, unix_ms, jd, mjd, gps_s."
         )
     name = good[0][1]
@@ -176,7 +176,7 @@ def _as_numbers(path, name: str, values: np.ndarray, place, repair: bool) -> np.
     import pandas as pd
 
     text = pd.Series(values, dtype="str").str.strip().str.replace(",", ".", regex=False)
-    numbers = pd.to_numeric(text.where(text != "", None), errors="coerce").to_numpy()
+    numbers = np.asarray(pd.to_numeric(text.where(text != "", None), errors="coerce"))
     bad = np.flatnonzero(
         ~np.isfinite(numbers.astype(float)) & ~text.str.lower().isin(["", "nan", "na", "null", "none"]).to_numpy()
     )
@@ -217,7 +217,7 @@ def _nanoseconds(numbers: np.ndarray, scale: int) -> np.ndarray:
 def _from_tai(times: np.ndarray, kind: str) -> np.ndarray:
     """UTC of TAI or GPS seconds: the leap seconds are looked up twice, as they are tabulated by UTC."""
     tai = times if kind == "tai_s" else times + np.timedelta64(315964800 + 19, "s")
-    return np.asarray(tai - _leap(tai - _leap(tai)))
+    return np.asarray(tai - _leap(np.asarray(tai - _leap(tai))))
 
 
 def _leap(utc: np.ndarray) -> np.ndarray:

@@ -135,3 +135,30 @@ def test_a_loud_part_is_not_a_heap_of_spikes():
     field += np.random.default_rng(4).normal(size=field.shape) * 50.0
     faults = find_faults(seconds, field, NT)
     assert not faults.spikes.any()
+
+
+def test_switched_disturbances_of_a_dirty_satellite_are_not_thrown_out():
+    """Earth-pointing, 5 s, 0.1 uT steps, currents that switch by microteslas: their edges may go, their levels may not."""
+    rng = np.random.default_rng(0)
+    seconds = np.arange(6000) * 5.0
+    level, start = np.zeros((6000, 3)), 0
+    while start < 6000:
+        length = int(rng.exponential(60)) + 1
+        level[start : start + length] = rng.normal(size=3) * 2500 * (rng.random() < 0.5)
+        start += length
+    field = np.round((orbit_field(seconds, 2 * np.pi / 5600.0, 0.0, 60.0) + level) / 100.0) * 100.0
+    faults = find_faults(seconds, field, NT)
+    assert not (faults.stuck | faults.held | faults.saturated | faults.sentinel).any()
+    assert faults.spikes.mean() < 0.02
+
+
+def test_nutation_and_uneven_sampling_are_no_faults():
+    from scipy.spatial.transform import Rotation
+
+    seconds = np.arange(5000.0)
+    turn = Rotation.from_rotvec(np.radians(50) * seconds[:, None] * np.array([0, 0, 1.0]))
+    turn *= Rotation.from_rotvec(np.radians(17) * seconds[:, None] * np.array([0.3, 0.5, 0.81]))
+    field = np.round((turn.apply(orbit_field(seconds, 0.0, 0.0, 100.0)) + 5e4) / 77.0) * 77.0
+    assert not find_faults(seconds, field, NT).any().any()
+    uneven = np.sort(np.random.default_rng(2).uniform(0, 6000, 3000))
+    assert not find_faults(uneven, orbit_field(uneven, np.radians(20), 100.0, 200.0), NT).any().any()

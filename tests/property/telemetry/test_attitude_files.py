@@ -35,7 +35,7 @@ def dataset():
     time = np.datetime64("2023-08-24T14:44:09.125", "ns") + np.arange(COUNT) * np.timedelta64(1, "s")
     q_bi = Rotation.from_rotvec(np.cumsum(rng.normal(size=(COUNT, 3)) * 0.3, axis=0)).as_quat()
     q_bi *= rng.choice([-1.0, 1.0], size=(COUNT, 1))
-    vector = lambda scale: (("time", "axis"), rng.normal(size=(COUNT, 3)) * scale)  # noqa: E731
+    vector = lambda scale: (("time", "axis"), rng.normal(size=(COUNT, 3)) * scale)
     data = xr.Dataset(
         {
             "q_bi": (("time", "quaternion"), q_bi, {"units": "1", "long_name": "attitude", "axes": "body against GCRS"}),

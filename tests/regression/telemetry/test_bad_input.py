@@ -74,7 +74,7 @@ def test_no_table(tmp_path, content, words):
 
 def test_a_missing_axis(tmp_path):
     lines = [",".join(line.split(",")[:6]) for line in LINES]
-    refuse(write(tmp_path, lines), "no z axis.*--mag")
+    refuse(write(tmp_path, lines), "no z axis.*--mag-columns")
 
 
 def test_text_in_a_number_is_named_or_dropped(tmp_path):
@@ -187,7 +187,7 @@ def test_nan_is_counted_and_not_used(tmp_path):
 def test_two_magnetometers_are_a_question(tmp_path):
     header = LINES[0] + ",mag2_x_nT,mag2_y_nT,mag2_z_nT"
     path = write(tmp_path, [header, *(f"{line},1,2,3" for line in LINES[1:])])
-    refuse(path, "2 magnetometers.*--mag mag_x_nT,mag_y_nT,mag_z_nT; --mag mag2_x_nT")
+    refuse(path, "2 magnetometers.*--mag-columns mag_x_nT,mag_y_nT,mag_z_nT; --mag-columns mag2_x_nT")
     assert len(read_telemetry(path, mag_columns=("mag_x_nT", "mag_y_nT", "mag_z_nT"))) == 399
 
 
