@@ -8,7 +8,6 @@ from fieldline.cases.erbs_like import erbs_like_arc
 from fieldline.estimation.natanson.candidates import natanson_candidates, turning_rate
 from fieldline.estimation.natanson.limits import expected_angle_error, three_sample_verdict
 
-pytestmark = pytest.mark.kernels
 
 
 def arc_of(seed, rate_deg_s, noise=1e-7, **settings):

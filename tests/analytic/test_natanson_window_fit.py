@@ -15,7 +15,6 @@ from fieldline.estimation.natanson.window_fit import (
     starts_on_circle,
 )
 
-pytestmark = pytest.mark.kernels
 OMEGA = np.radians([-0.018, 0.049, -0.034])
 
 
@@ -28,6 +27,7 @@ def arc_of(seconds, rotation, omega, noise=0.0, seed=0):
     return attitudes.inv().apply(field_i) + noisy, field_i
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("theta", [(0.3, -0.7, 1.1), (1e-4, 2e-4, -1e-4), (0.0, 0.0, 0.0)])
 def test_right_jacobian_is_that_of_the_rotation_group(theta):
     found = np.reshape(right_jacobian(theta), (3, 3))
@@ -36,6 +36,7 @@ def test_right_jacobian_is_that_of_the_rotation_group(theta):
     assert found == pytest.approx(np.transpose(by_differences), abs=2e-6)
 
 
+@pytest.mark.kernels
 def test_gradient_equals_differences_of_the_cost():
     seconds = 10.0 * np.arange(-20, 21)
     body, inertial = arc_of(seconds, Rotation.from_rotvec([0.4, -0.9, 1.3]), 5.0 * OMEGA)
@@ -55,6 +56,7 @@ def test_gradient_equals_differences_of_the_cost():
         assert -gradient[3 + k] == pytest.approx(slope, rel=1e-6)
 
 
+@pytest.mark.kernels
 def test_exact_data_are_fitted_exactly_from_a_distant_start():
     seconds = 8.0 * np.arange(121)
     true = Rotation.from_rotvec([0.4, -0.9, 1.3])
@@ -98,6 +100,7 @@ def test_a_bank_on_the_circle_needs_no_prior():
     assert (np.diff(fit.chi_square) >= 0.0).all()
 
 
+@pytest.mark.kernels
 def test_one_fixed_direction_is_not_enough_and_the_covariance_says_so():
     """A field that never turns leaves the turn about it unknown: no covariance, or one beyond a full turn."""
     field = np.tile([3e-5, 0.0, 0.0], (60, 1))

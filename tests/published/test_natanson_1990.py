@@ -168,7 +168,6 @@ def test_the_total_rate_survives_the_oscillation():
     assert np.nanmedian(total) == pytest.approx(0.062, abs=0.008)
 
 
-@pytest.mark.kernels
 def test_smoothing_and_window_beat_three_samples_on_the_same_digits():
     """Reference, random cases: polynomial over 960 s 1.4 / 8.0 deg, least squares over 960 s 0.22 / 1.0 deg."""
     arcs = [run(smoothing="polynomial", window_s=960.0, fit_s=960.0, **k) for k in RANDOM[:10]]
