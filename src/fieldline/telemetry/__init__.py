@@ -3,7 +3,7 @@
 from fieldline.telemetry.aem import write_attitude_aem
 from fieldline.telemetry.attitude_csv import write_attitude_csv
 from fieldline.telemetry.attitude_netcdf import write_attitude_netcdf
-from fieldline.telemetry.reading import read_telemetry
+from fieldline.telemetry.reading import read_telemetry, telemetry_of
 from fieldline.telemetry.record import Quality, Recognised, Telemetry
 from fieldline.telemetry.telemetry_csv import write_telemetry_csv
 
@@ -12,6 +12,7 @@ __all__ = [
     "Recognised",
     "Telemetry",
     "read_telemetry",
+    "telemetry_of",
     "write_attitude_aem",
     "write_attitude_csv",
     "write_attitude_netcdf",

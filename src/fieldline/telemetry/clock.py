@@ -31,6 +31,8 @@ _LOCAL = set(
 )
 _OFFSET = re.compile(r"(utc|gmt)[\s_]*[+-][\s_]*\d|[+-]\d\d:?\d\d\b", re.I)
 _TEXT_OFFSET = re.compile(r"[T ]\d{1,2}:?\d\d.*([+-]\d\d:?(\d\d)?)\s*$")
+_DATE = re.compile(r"\s*\d{4}[-/]\d\d?[-/]\d\d?\s*$")
+_TIME_OF_DAY = re.compile(r"\s*\d\d?:\d\d(:\d\d(\.\d+)?)?\s*Z?\s*$")
 _UNIT_WORDS = {"s": "s", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "ms": "ms", "msec": "ms", "millis": "ms"}
 _UNIT_WORDS |= {"milliseconds": "ms", "us": "us", "usec": "us", "micros": "us", "microseconds": "us", "ns": "ns"}
 _UNIT_WORDS |= {"nsec": "ns", "nanos": "ns", "nanoseconds": "ns"}
@@ -42,12 +44,18 @@ _LOCAL_ADVICE = (
 
 
 class TimeColumn(NamedTuple):
-    """A column and how it counts; `why` is told to the user; `epoch` for seconds since one."""
+    """A column and how it counts; `why` is told to the user; `epoch` for seconds since one; `clock`: the time of day."""
 
     name: str
     kind: str
     why: str
     epoch: np.datetime64 | None = None
+    clock: str = ""
+
+    @property
+    def names(self) -> list[str]:
+        """The columns to read: one, or a date and its time of day."""
+        return [self.name, self.clock] if self.clock else [self.name]
 
 
 def _is_text(value) -> bool:
@@ -105,6 +113,9 @@ def find_time(path, names: Sequence[str], units, peek, *, told: bool = False) ->
     name = good[0][1]
     if told:
         return TimeColumn(name, "", "")
+    dates, clocks = ([n for _, n in good if pattern.match(str(peek.get(n, "")))] for pattern in (_DATE, _TIME_OF_DAY))
+    if dates and clocks and (name in dates or name in clocks):
+        return TimeColumn(dates[0], "iso", f"with the time of day in {clocks[0]}", clock=clocks[0])
     return time_kind(path, name, units.get(name, ""), peek.get(name))
 
 
@@ -167,6 +178,15 @@ def to_utc(path, column: TimeColumn, values: np.ndarray, place, repair: bool = F
     else:
         times = _counted(column, _as_numbers(path, column.name, values, place, repair))
     return _within_years(path, column, times, values, place, repair), notes
+
+
+def joined(column: TimeColumn, columns: dict[str, np.ndarray]) -> np.ndarray:
+    """The values of the time column, a date joined with its time of day."""
+    values = columns[column.name]
+    if not column.clock:
+        return values
+    pairs = zip(values, columns[column.clock], strict=True)
+    return np.array([f"{str(date).strip()}T{str(clock).strip()}" for date, clock in pairs], dtype=object)
 
 
 def _as_numbers(path, name: str, values: np.ndarray, place, repair: bool) -> np.ndarray:

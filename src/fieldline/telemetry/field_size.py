@@ -18,6 +18,7 @@ from fieldline.telemetry.quality import FILL_BEYOND
 
 SIZE_TESLA = (1.0e-5, 7.0e-4)  # the 95 % quantile of the raw size
 SPREAD_MAX_TESLA = 1.8e-4  # the 95 % quantile of the distance from the median
+AXES_RATIO, AXES_SAMPLES = 300.0, 100  # noise alone is more than a 300th of the field
 _TYPICAL_SPREAD = 3.5e-5
 _UNITS = (("nT", 1e-9), ("uT", 1e-6), ("mG", 1e-7), ("G", 1e-4), ("mT", 1e-3), ("T", 1.0))
 
@@ -59,6 +60,8 @@ def check_size(path, columns: Sequence[Column], numbers: np.ndarray, factor: flo
     unit = columns[0].unit
     if unit is None or math.isnan(factor):
         raise _question(path, columns, numbers)
+    if not stated:
+        _check_axes(path, columns, numbers)
     size, spread = (value * factor for value in sizes(numbers))
     if is_plausible(size, spread):
         return []
@@ -72,3 +75,17 @@ def check_size(path, columns: Sequence[Column], numbers: np.ndarray, factor: flo
         f"expected {SIZE_TESLA[0]:.0e} to {SIZE_TESLA[1]:.0e} T, varying by at most {SPREAD_MAX_TESLA:.1e} T. {advice} "
         f"(or --unit {unit.name} if that is what they are)."
     )
+
+
+def _check_axes(path, columns: Sequence[Column], numbers: np.ndarray) -> None:
+    """Ask about an axis that reads hundreds of times less than another: a unit of its own that its name does not tell."""
+    good = numbers[(np.abs(numbers) < FILL_BEYOND).all(axis=1)]
+    if len(good) < AXES_SAMPLES:
+        return
+    reach = np.quantile(np.abs(good), 0.95, axis=0)
+    small, large = int(np.argmin(reach)), int(np.argmax(reach))
+    if reach[small] * AXES_RATIO < reach[large]:
+        raise InputError(
+            f'"{path}": {columns[small].name} reads {reach[large] / max(reach[small], 1e-300):.3g} times less than '
+            f"{columns[large].name}. Is it in another unit, or unread? Correct it, or state the unit of all three with --unit."
+        )

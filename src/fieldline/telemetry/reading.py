@@ -8,8 +8,9 @@ import numpy as np
 
 from fieldline.errors import InputError
 from fieldline.files import sha256_of
+from fieldline.frames.time import as_utc
 from fieldline.telemetry.choice import Choice, choose
-from fieldline.telemetry.clock import to_utc
+from fieldline.telemetry.clock import joined, to_utc
 from fieldline.telemetry.columns import Column
 from fieldline.telemetry.field_size import check_size
 from fieldline.telemetry.mapping import read_mapping
@@ -19,6 +20,7 @@ from fieldline.telemetry.record import Quality, Recognised, Telemetry
 from fieldline.telemetry.table import AXES, Table, open_table
 
 GAP_STEPS = 1.5
+COARSE_CLOCK = 0.3  # a share of repeated stamps that no fault explains
 
 
 def read_telemetry(
@@ -41,8 +43,8 @@ def read_telemetry(
     source = open_table(path)
     said = read_mapping(mapping, columns, units, mag_columns, time_column, unit)
     choice = choose(source, said)
-    table = source.read(choice.numbers(), [choice.time.name], repair)
-    time_utc, time_notes = to_utc(path, choice.time, table.columns[choice.time.name], table.place, repair)
+    table = source.read(choice.numbers(), choice.time.names, repair)
+    time_utc, time_notes = to_utc(path, choice.time, joined(choice.time, table.columns), table.place, repair)
     table, time_utc, counts = _in_order(path, table, time_utc, choice, repair)
     raw = np.stack([table.columns[column.name] for column in choice.magnetometer], axis=-1)
     _check_field(path, choice, raw)
@@ -54,6 +56,46 @@ def read_telemetry(
         raise InputError(f'"{path}": no sample of the magnetometer is usable: {_count_faults(faults)}.')
     quality = _account(seconds, faults, counts, notes)
     return _assemble(path, choice, table, time_utc, raw * factor, ~faults.any(), quality, [*source.notes, *time_notes])
+
+
+def telemetry_of(
+    time_utc,
+    field_s,
+    *,
+    rate_b=None,
+    sun_sensor=None,
+    dipole_command_b=None,
+    wheel_speed=None,
+    temperature_k=None,
+    position_e=None,
+    solar_current=None,
+    name: str = "telemetry",
+) -> Telemetry:
+    """Telemetry of arrays in SI units, as a simulation makes them, with the faults looked for as in a file.
+
+    time_utc (n,), strictly increasing; field_s (n, 3) [T]; the others as in `Telemetry`.
+    """
+    time_utc, field_s = as_utc(time_utc), np.asarray(field_s, dtype=float)
+    if field_s.shape != (len(time_utc), 3) or len(time_utc) < 2:
+        raise InputError(f"field_s must be (n, 3) [T] for n >= 2 times; got {field_s.shape} for {len(time_utc)} times.")
+    seconds = (time_utc - time_utc[0]).astype(np.int64) * 1e-9
+    if (np.diff(seconds) <= 0.0).any():
+        raise InputError(f"time_utc must increase; sample {int(np.argmax(np.diff(seconds) <= 0.0)) + 1} does not.")
+    faults = find_faults(seconds, field_s, 1.0)
+    return Telemetry(
+        time_utc=time_utc,
+        field_s=field_s,
+        usable=~faults.any(),
+        rate_b=rate_b,
+        sun_sensor=sun_sensor or {},
+        dipole_command_b=dipole_command_b,
+        wheel_speed=wheel_speed or {},
+        temperature_k=temperature_k,
+        position_e=position_e,
+        solar_current=solar_current,
+        quality=_account(seconds, faults, {}, ()),
+        name=name,
+    )
 
 
 def _in_order(path, table: Table, time_utc: np.ndarray, choice: Choice, repair: bool):
@@ -69,11 +111,12 @@ def _in_order(path, table: Table, time_utc: np.ndarray, choice: Choice, repair: 
     wrong = np.flatnonzero(step <= 0) if not missing.any() else np.zeros(0, int)
     if len(wrong) and not repair:
         row = int(wrong[0]) + 1
+        coarse = "The clock column is coarser than the sampling: use a finer one. " if np.mean(step == 0) > COARSE_CLOCK else ""
         what = "repeats" if step[wrong[0]] == 0 else "is before"
         raise InputError(
             f'"{path}", {table.place(row)}: the time {_iso(time_utc[row])} {what} that of the row before it '
             f"({_iso(time_utc[row - 1])}); {len(wrong):,} of {len(ns):,} rows are so. "
-            "Use --repair (repair=True) to sort them and drop repeated ones."
+            f"{coarse}Use --repair (repair=True) to sort them and drop repeated ones."
         )
     kept = np.flatnonzero(~missing)
     unordered = int((np.diff(ns[kept]) < 0).sum())

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from fieldline.errors import InputError
 from fieldline.telemetry import (
     read_telemetry,
+    telemetry_of,
     write_attitude_aem,
     write_attitude_csv,
     write_attitude_netcdf,
@@ -163,3 +164,21 @@ def test_an_interrupted_telemetry_write_leaves_nothing(tmp_path, monkeypatch):
 def test_a_folder_that_is_not_there(tmp_path, dataset):
     with pytest.raises(InputError, match="does not exist"):
         write_attitude_csv(dataset, tmp_path / "nowhere" / "a.csv")
+
+
+def test_telemetry_of_arrays_is_that_of_its_file(tmp_path):
+    angle = 0.4 * np.arange(300)
+    field_s = 3e-5 * np.stack([np.cos(angle), np.sin(angle), 0.4 * np.cos(angle / 30)], axis=-1)
+    field_s[40] = np.nan
+    field_s[90, 1] += 8e-5
+    time = np.datetime64("2024-01-01", "ns") + np.arange(300) * np.timedelta64(250, "ms")
+    made = telemetry_of(time, field_s, rate_b=np.ones((300, 3)), sun_sensor={"-x": angle})
+    read = read_telemetry(write_telemetry_csv(made, tmp_path / "a.csv"))
+    assert np.array_equal(made.field_s, read.field_s, equal_nan=True)
+    assert np.array_equal(made.usable, read.usable)
+    assert made.quality == read.quality
+    assert list(np.flatnonzero(~made.usable)) == [40, 90]
+    with pytest.raises(InputError, match="must increase"):
+        telemetry_of(time[::-1], field_s)
+    with pytest.raises(InputError, match="field_s must be"):
+        telemetry_of(time, field_s.T)

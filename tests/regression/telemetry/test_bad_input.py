@@ -95,6 +95,20 @@ def test_mixed_units(tmp_path):
     refuse(write(tmp_path, lines), "different units: .*mag_z_uT in uT")
 
 
+def test_mixed_units_that_no_name_tells(tmp_path):
+    rows = []
+    for line in LINES[1:]:
+        cells = line.split(",")
+        cells[6] = f"{float(cells[6]) * 1e-3:.6g}"
+        rows.append(",".join(cells))
+    refuse(write(tmp_path, [LINES[0], *rows]), "mag_z_nT reads .* times less than mag_x_nT. Is it in another unit")
+
+
+def test_a_clock_coarser_than_the_sampling(tmp_path):
+    rows = [",".join([str(1692888249 + k // 4), *line.split(",")[1:]]) for k, line in enumerate(LINES[1:])]
+    refuse(write(tmp_path, [LINES[0], *rows]), "coarser than the sampling")
+
+
 @pytest.mark.parametrize(
     ("name", "scale", "words"),
     [
