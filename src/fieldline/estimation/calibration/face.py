@@ -19,7 +19,7 @@ from fieldline.estimation.calibration.spline import KNOT_SPACING_S, UniformSplin
 from fieldline.estimation.calibration.words import with_sentences
 
 FEWEST_SAMPLES = 30
-THINNED = 6000  # samples that decide between candidates; all are used for the final fit
+THINNED = 4000  # samples that decide between candidates; all are used for the final fit
 EXTENSIONS = {
     "gain": {"gain": "reading"},
     "field-gain": {"gain": "field"},
@@ -150,7 +150,8 @@ def calibrate_flights(
         else:
             first, table = climb(wanted, thin), []
         best = fit(first.terms, first.theta, samples, prior_of(first.terms, samples))
-    return tuple(_record(best, samples, units, flights[k], k, table, model, unsure) for k in range(len(flights)))
+    common = covariance_of(best, samples, unsure)
+    return tuple(_record(best, samples, units, flights[k], k, table, model, common) for k in range(len(flights)))
 
 
 def climb(wanted: Terms, samples: Samples) -> Fit:
@@ -272,10 +273,17 @@ def physical_units(terms: Terms, units: Units) -> np.ndarray:
 
 
 def _record(
-    best: Fit, samples: Samples, units: Units, flight: Flight, number: int, table: list[Candidate], model: str, unsure: float
+    best: Fit,
+    samples: Samples,
+    units: Units,
+    flight: Flight,
+    number: int,
+    table: list[Candidate],
+    model: str,
+    common: tuple[Terms, np.ndarray, np.ndarray],
 ) -> Calibration:
-    """One flight's Calibration from the common fit."""
-    terms, theta, covariance = covariance_of(best, samples, unsure)
+    """One flight's Calibration from the common fit and its `covariance_of`."""
+    terms, theta, covariance = common
     if model == "none":
         covariance = np.zeros_like(covariance)  # whoever asks for no calibration vouches for the sensor
     size = physical_units(terms, units)

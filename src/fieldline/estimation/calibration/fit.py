@@ -24,6 +24,8 @@ MATRIX_STD = 0.15
 MEAN_GAIN_STD = 1e-6  # the mean gain belongs to D; this fixes it at 1
 SCALE_FLOOR = 1e-7  # of the field: a few pT, so that noise-free tests have a scale
 OUTLIER_SIGMAS = 6.0
+LARGEST_DAMPING = 1e8
+SETTLED = 1e-4  # of the cost, where one sigma of a parameter is 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,22 +125,21 @@ def fit(terms: Terms, theta: np.ndarray, samples: Samples, prior: Prior, *, roun
 def _descend(
     terms: Terms, theta: np.ndarray, residual: np.ndarray, samples: Samples, prior: Prior, scale: float, steps: int
 ) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Levenberg-Marquardt at a fixed scale; True when the last step promised nothing."""
+    """Levenberg-Marquardt at a fixed scale; True when another step promises nothing."""
     cost, damping = cost_of(prior, theta, residual, scale), 1e-6
     matrix, gradient = _system(terms, theta, samples, prior, scale)
     for _ in range(steps):
         step = -np.linalg.solve(matrix + damping * np.diag(np.diag(matrix)), gradient)
+        promised = -float(gradient @ step)
         trial = theta + step
         trial_residual = distances(terms, trial, samples)
         trial_cost = cost_of(prior, trial, trial_residual, scale)
         if trial_cost <= cost:
-            promised = -float(gradient @ step)
             theta, residual, cost, damping = trial, trial_residual, trial_cost, max(damping * 0.1, 1e-12)
-            if promised < 1e-6 * max(1.0, 1e-3 * len(theta)):
-                return theta, residual, True
-            matrix, gradient = _system(terms, theta, samples, prior, scale)
-        elif damping > 1e8:
+        if promised < SETTLED or damping > LARGEST_DAMPING:
             return theta, residual, True
+        if theta is trial:
+            matrix, gradient = _system(terms, theta, samples, prior, scale)
         else:
             damping = max(damping * 10.0, 1e-6)
     return theta, residual, False
