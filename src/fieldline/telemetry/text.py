@@ -66,6 +66,7 @@ def find_layout(path: Path) -> Layout:
     lines = head.decode(encoding, errors="replace").splitlines()
     if not whole:
         lines = lines[:-1]  # the last is cut
+    _refuse_other_texts(path, lines)
     body = [(number, line) for number, line in enumerate(lines) if line.strip() and not _is_comment(line)]
     if body and re.match(r"sep=.$", body[0][1].strip()):
         body = body[1:]
@@ -88,6 +89,22 @@ def find_layout(path: Path) -> Layout:
     peek = {name: next((row[k] for row in cells if k < len(row) and row[k] not in MISSING), "") for k, name in enumerate(names)}
     comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell) for row in cells for cell in row)
     return Layout(path, encoding, packed, delimiter, "," if comma else ".", names, rows[0][0], units, peek)
+
+
+# What is often given by mistake: how it begins, and what to say.
+_OTHER_TEXTS = (
+    (r"<", "is a web page or XML, not a table; fetch the file itself, or export it as CSV"),
+    (r"[\[{]", "is JSON, not a table; export it as CSV or Parquet"),
+    (r"(.{0,30}\n)?1 [0-9A-Z ]{5}[UCS] ", "is a TLE; give it as --orbit, and the telemetry first"),
+    (r"CCSDS_O[EM]M_VERS", "is an orbit message; give it as --orbit, and the telemetry first"),
+)
+
+
+def _refuse_other_texts(path: Path, lines: Sequence[str]) -> None:
+    start = "\n".join(line for line in lines[:40] if line.strip())
+    for pattern, what in _OTHER_TEXTS:
+        if re.match(pattern, start.lstrip("\ufeff ")):
+            raise InputError(f'"{path}" {what}.')
 
 
 def _head(path: Path) -> tuple[bytes, bool, bool]:

@@ -118,3 +118,12 @@ def test_gps_time_across_a_leap_second(tmp_path):
     telemetry = read_telemetry(write(tmp_path / "a.csv", "gps_s", stamps))
     assert str(telemetry.time_utc[-2])[:19] == "2016-12-31T23:59:59"
     assert str(telemetry.time_utc[-1])[:19] == "2017-01-01T00:00:00"
+
+
+@pytest.mark.parametrize("header", ["date,time", "utc_date,utc_time"])
+def test_a_date_and_a_time_of_day(tmp_path, header):
+    stamps = [stamp.replace("T", ",") for stamp in iso()]
+    assert np.array_equal(read_telemetry(write(tmp_path / "a.csv", header, stamps)).time_utc, TIME)
+    swapped = [",".join(reversed(stamp.split("T"))) for stamp in iso()]
+    header = ",".join(reversed(header.split(",")))
+    assert np.array_equal(read_telemetry(write(tmp_path / "a.csv", header, swapped)).time_utc, TIME)

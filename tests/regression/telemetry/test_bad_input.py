@@ -64,6 +64,11 @@ def test_missing_file_and_folder(tmp_path):
         (gzip.compress(b"unix_s,mag_x_nT\n")[:-6], "damaged"),
         (b"just a sentence without any table", "time column|no samples"),
         (LINES[0].encode(), "no samples"),
+        (b"<!DOCTYPE html><html></html>\n", "web page"),
+        (b'[{"time": 1}]\n', "JSON"),
+        (b"1 52191U 22033AL  23236.44460393  .00026275  00000+0  73805-3 0  9994\n2 52191 ...\n", "TLE; give it as --orbit"),
+        (b"SUCHAI-3\n1 52191U 22033AL  23236.44460393  .00026275  00000+0\n", "TLE; give it as --orbit"),
+        (b"CCSDS_OEM_VERS = 2.0\n", "orbit message"),
     ],
 )
 def test_no_table(tmp_path, content, words):
