@@ -182,3 +182,39 @@ def test_telemetry_of_arrays_is_that_of_its_file(tmp_path):
         telemetry_of(time[::-1], field_s)
     with pytest.raises(InputError, match="field_s must be"):
         telemetry_of(time, field_s.T)
+
+
+FULL_DISK = """
+import resource, sys
+from pathlib import Path
+import numpy as np, xarray as xr
+from fieldline.errors import InputError
+from fieldline.telemetry import write_attitude_aem, write_attitude_csv, write_attitude_netcdf
+
+rng = np.random.default_rng(0)
+count = 20_000
+names = ("omega_bi_b", "attitude_std_b", "omega_std_b", "residual_b")
+data = {name: (("time", "axis"), rng.normal(size=(count, 3))) for name in names}
+data |= {"q_bi": (("time", "quaternion"), rng.normal(size=(count, 4))), "used": ("time", np.ones(count, bool))}
+time = np.datetime64("2023-08-24", "ns") + np.arange(count) * np.timedelta64(1, "s")
+dataset = xr.Dataset(data, coords={"time": time})
+folder = Path(sys.argv[1])
+resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+for write, ending in ((write_attitude_csv, "csv"), (write_attitude_aem, "aem"), (write_attitude_netcdf, "nc")):
+    try:
+        write(dataset, folder / f"a.{ending}")
+    except InputError as error:
+        print(error)
+    print(len(list(folder.iterdir())), "files")
+"""
+
+
+def test_a_disk_that_is_full_for_the_system_itself(tmp_path):
+    """The system refuses to let a file grow: each library reports it in its own way, and nothing stays behind."""
+    import subprocess
+    import sys
+
+    done = subprocess.run([sys.executable, "-c", FULL_DISK, str(tmp_path)], capture_output=True, text=True, check=True)
+    lines = done.stdout.splitlines()
+    assert [line for line in lines if line.endswith("files")] == ["0 files"] * 3
+    assert sum("could not write" in line and "Nothing was changed" in line for line in lines) == 3
