@@ -17,7 +17,7 @@ from fieldline.cli.progress import Progress, progress_on_stderr
 from fieldline.errors import InputError, nearest
 
 CALIBRATIONS = ("auto", "none", "bias", "full")
-USABLE_SENSORS = ("gyro",)
+USES = ("gyro", "temperature", "dipole", "current")
 ENDINGS = (".nc", ".csv", ".aem", ".html")
 
 
@@ -44,7 +44,9 @@ def attitude(
     orbit: options.Orbit = None,
     out: options.Out = None,
     model: options.Model = "IGRF-14",
-    use: Annotated[list[str] | None, typer.Option(help="A further sensor to use: gyro.", show_default=False)] = None,
+    use: Annotated[
+        list[str] | None, typer.Option(help="A further column to use: gyro, temperature, dipole, current.", show_default=False)
+    ] = None,
     calibration: Annotated[str, typer.Option(help="auto, none, bias, full, or a FILE of `fieldline calibrate`.")] = "auto",
     mapping: options.Mapping = None,
     mag_columns: options.MagColumns = None,
@@ -72,7 +74,7 @@ def attitude(
         norad_id=norad_id, max_orbit_age_days=max_orbit_age_days,
     )  # fmt: skip
     job = Job(
-        telemetry=telemetry, stem=stem_of(out, telemetry, "attitude"), source=source, model=model, use=_sensors(use),
+        telemetry=telemetry, stem=stem_of(out, telemetry, "attitude"), source=source, model=model, use=_columns(use),
         calibration=calibration, inertia=inertia, seed=seed, report=report, figures=figures, quiet=quiet, as_json=as_json,
     )  # fmt: skip
     return run(job)
@@ -152,12 +154,12 @@ def summary(verdict: dict[str, Any]) -> str:
     return " · ".join(parts)
 
 
-def _sensors(use: list[str] | None) -> tuple[str, ...]:
-    """The sensors of --use, given one by one or with commas."""
+def _columns(use: list[str] | None) -> tuple[str, ...]:
+    """The columns of --use, given one by one or with commas."""
     names = tuple(name.strip() for one in use or () for name in one.split(","))
     for name in names:
-        if name not in USABLE_SENSORS:
-            raise InputError(f'--use "{name}": no such sensor; {nearest(name, USABLE_SENSORS)}')
+        if name not in USES:
+            raise InputError(f'--use "{name}": no such column; {nearest(name, USES)}')
     return names
 
 

@@ -93,10 +93,8 @@ def _shown(calibration: Any, telemetry: Any, orbit: Any, model: str) -> Any:
     )
     later_s = float((telemetry.epoch_utc - calibration.epoch_utc) / np.timedelta64(1, "s"))
     summary = calibration.summary()
-    summary["gain_knots_s"] = [knot - later_s for knot in summary["gain_knots_s"]]
-    if summary["gain_knots_s"]:
-        curve_s = np.linspace(summary["gain_knots_s"][0], summary["gain_knots_s"][-1], 300)
-        summary |= {"gain_curve_s": curve_s.tolist(), "gain_curve": calibration.gain(curve_s + later_s).tolist()}
+    for key in ("gain_knots_s", "gain_curve_s"):
+        summary[key] = [seconds - later_s for seconds in summary.get(key, [])]
     return CalibratedFlight(
         name=telemetry.name,
         time_utc=telemetry.time_utc,

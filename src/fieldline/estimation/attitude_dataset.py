@@ -40,6 +40,7 @@ def attitude_dataset(
         "residual_b": (VECTOR, measured - predicted_b, "T", "measured less predicted field, body axes"),
         "used": (TIME, used, "1", "whether the sample was used"),
         "nis": (TIME, smoothed.nis / 3.0, "1", "normalised innovation squared per axis; expectation 1"),
+        "innovation_b": (VECTOR, smoothed.white, "1", "innovation of the filter, whitened; unit variance expected"),
         "field_i": (VECTOR, reference.field_i, "T", "field model along the orbit, GCRS axes"),
         "position_i": (VECTOR, reference.position_i, "m", "position, GCRS axes"),
         "velocity_i": (VECTOR, reference.velocity_i, "m s-1", "velocity, GCRS axes"),

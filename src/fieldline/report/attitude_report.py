@@ -58,7 +58,13 @@ def report_html(estimate: xarray.Dataset) -> str:
             ("input", section("input", "Input", chapters.input_tables(verdict))),
             (
                 "provenance",
-                section("provenance", "Provenance", chapters.provenance_table(verdict.get("settings", {}), record.provenance)),
+                section(
+                    "provenance",
+                    "Provenance",
+                    chapters.provenance_table(
+                        verdict.get("settings", {}), record.provenance, [verdict.get("orbit", {}), verdict.get("field_model", {})]
+                    ),
+                ),
             ),
         ],
         "Body axes are the magnetometer's axes as the file gives them; a constant turn between them and the satellite's is not "
@@ -79,20 +85,21 @@ def write_figures(estimate: xarray.Dataset, folder: str | Path) -> list[Path]:
 
 def _pictures(record: Record) -> dict[str, list[Picture]]:
     """All figures, by chapter, those that the Dataset has the variables for."""
+    from fieldline.report.calibration_figures import gain_picture, slow_error_picture
     from fieldline.report.field_figures import field_picture, magnitude_picture
-    from fieldline.report.gain_figure import gain_picture
     from fieldline.report.judgement_figures import gyro_picture, sun_picture
     from fieldline.report.motion_figures import attitude_picture, rate_picture, uncertainty_picture
     from fieldline.report.residual_figures import residual_picture, whiteness_picture
     from fieldline.report.track_figure import track_picture
 
     with themed():
-        gain = gain_picture(record.verdict.get("calibration", {}), record.time_utc[0], _eclipses(record))
+        dark = _eclipses(record)
+        gain = gain_picture(record.verdict.get("calibration", {}), record.time_utc[0], dark)
         groups = {
             "field": [field_picture(record), magnitude_picture(record)],
             "motion": [rate_picture(record), attitude_picture(record), uncertainty_picture(record)],
             "residuals": [residual_picture(record), whiteness_picture(record), track_picture(record)],
-            "calibration": [gain],
+            "calibration": [gain, slow_error_picture(record, dark)],
             "judgement": [gyro_picture(record), sun_picture(record)],
         }
     return {name: [p for p in group if p is not None] for name, group in groups.items()}
@@ -105,8 +112,7 @@ def _eclipses(record: Record) -> list[tuple[float, float]]:
 
 def _name(record: Record) -> str:
     """The telemetry's name, as the provenance has it."""
-    telemetry = record.provenance.get("telemetry", {})
-    return str(telemetry.get("name", "telemetry")) if isinstance(telemetry, dict) else str(telemetry)
+    return str(record.provenance.get("inputs", {}).get("telemetry", {}).get("name", "telemetry"))
 
 
 def _span(record: Record) -> str:

@@ -65,8 +65,8 @@ def verdict_sentence(summaries: Sequence[dict[str, Any]]) -> str:
 
 def pictures(flights: Sequence[CalibratedFlight]) -> list[Picture]:
     """For each flight its magnitudes and, where there is one, its gain."""
+    from fieldline.report.calibration_figures import gain_picture
     from fieldline.report.field_figures import magnitudes_picture
-    from fieldline.report.gain_figure import gain_picture
 
     drawn: list[Picture | None] = []
     with themed():

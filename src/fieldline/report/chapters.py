@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from fieldline.report.markup import facts, flat, number, sentences, table, text
@@ -99,11 +100,21 @@ def input_tables(verdict: dict[str, Any]) -> str:
     )
 
 
-def provenance_table(settings: dict[str, Any], provenance: dict[str, Any]) -> str:
-    """Settings, versions, hashes: what is needed to make the same estimate again."""
+def provenance_table(settings: dict[str, Any], provenance: dict[str, Any], told: Sequence[dict[str, Any]] = ()) -> str:
+    """Settings, versions, hashes: what is needed to make the same estimate again; what the page has `told` is left out."""
     parts = []
     if settings:
         parts.append("<h3>Settings</h3>" + facts(flat(settings)))
-    if provenance:
-        parts.append("<h3>Versions and files</h3>" + facts(flat(provenance)))
+    rest = _without(provenance, [settings, *told])
+    if rest:
+        parts.append("<h3>Versions and files</h3>" + facts(flat(rest)))
     return "".join(parts)
+
+
+def _without(record: dict[str, Any], told: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The record less those parts that stand elsewhere on the page."""
+    return {
+        key: _without(value, told) if isinstance(value, dict) else value
+        for key, value in record.items()
+        if not (isinstance(value, dict) and value in told)
+    }

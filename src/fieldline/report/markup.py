@@ -14,6 +14,8 @@ def text(value: Any) -> str:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
+    if isinstance(value, int):
+        return str(value)
     if isinstance(value, Real):
         return number(float(value))
     if isinstance(value, (list, tuple)):

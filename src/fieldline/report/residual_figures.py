@@ -42,21 +42,26 @@ def residual_picture(record: Record) -> Picture:
 
 
 def whiteness_picture(record: Record) -> Picture:
-    """Spectrum and autocorrelation of the residuals, and the innovations' squares against what the filter expects."""
-    used = record.used
-    grid = gridded(record.seconds[used], record.values("residual_b", NANOTESLA)[used], record.step_s)
+    """Spectrum and autocorrelation of the filter's innovations, and their squares against what the filter expects."""
+    name, what = ("innovation_b", "innovations") if record.has("innovation_b") else ("residual_b", "residuals")
+    values = record.values(name)
+    good = record.used & np.isfinite(values).all(axis=1)
+    if good.sum() < 2:
+        good = np.ones(len(values), dtype=bool)
+    grid = gridded(record.seconds[good], np.nan_to_num(values[good]), record.step_s)
     lags = int(min(200, max(len(grid) // 4, 2)))
     figure, axes = panels(1, 3, height_in=2.9, column_gap=0.24)
     _draw_spectrum(axes[0, 0], grid, record.step_s)
-    _draw_memory(axes[0, 1], autocorrelation(grid, lags), record.step_s, int(used.sum()))
+    _draw_memory(axes[0, 1], autocorrelation(grid, lags), record.step_s, int(good.sum()))
     _draw_nis(axes[0, 2], record)
     words = record.verdict.get("consistency", {}).get("words", "")
     return Picture(
         "whiteness",
-        "Are the residuals white?",
-        "Left and middle: a peak, or lines outside the dashed bounds, is a signal left in the residuals. Right: above the "
-        "dashed line the filter is too sure of itself, below it too timid." + (f" Verdict: {words}." if words else ""),
-        f"Spectrum and autocorrelation of the residuals, and the mean of the normalised innovations squared. {words}",
+        f"Are the {what} white?",
+        f"Innovations are measurements less what the filter foretold. Left and middle, {what}: a peak, or lines outside the "
+        "dashed bounds, is a signal that the model does not know. Right: above the dashed line the filter is too sure of "
+        "itself, below it too timid." + (f" In words: {words}." if words else ""),
+        f"Spectrum and autocorrelation of the {what}, and the mean of the normalised innovations squared. {words}",
         figure,
     )
 
@@ -94,10 +99,10 @@ def _draw_memory(axes: Any, memory: np.ndarray, step_s: float, count: int) -> No
 
 
 def _draw_nis(axes: Any, record: Record) -> None:
-    """Means of the normalised innovation squared over blocks of the arc, over its expectation 3."""
+    """Means of the normalised innovation squared per axis over blocks of the arc; its expectation is 1."""
     nis = record.values("nis")
     known = np.isfinite(nis) & record.used
-    time, nis = record.time[known], nis[known] / 3.0
+    time, nis = record.time[known], nis[known]
     size = max(len(nis) // NIS_BLOCKS, 1)
     blocks = len(nis) // size
     means = nis[: blocks * size].reshape(blocks, size).mean(axis=1)

@@ -49,11 +49,13 @@ def spinning_estimate(samples=5600, step_s=1.0, rate_deg_s=(-9.0, -45.0, -2.0), 
         "altitude_m": ("time", np.linalg.norm(position, axis=1) - 6.371e6),
         "sun_i": (vector, np.broadcast_to(sun, (n, 3)).copy()),
         "sunlit": ("time", sunlit),
-        "nis": ("time", draw.chisquare(3, n)),
+        "nis": ("time", draw.chisquare(3, n) / 3.0),
     }
     if extras:
         faces = ["-x", "-y", "-z"]
         sun_b = turn(q, data["sun_i"][1])
+        data["slow_error_b"] = (vector, 3e-7 * np.sin(seconds / 700.0)[:, None] * [1.0, -0.5, 0.3])
+        data["innovation_b"] = (vector, draw.normal(size=(n, 3)))
         data["gyro_b"] = (vector, omega + np.radians([0.4, -0.3, 0.2]) + draw.normal(0, 3e-3, (n, 3)))
         lit = np.maximum(-sun_b, 0) * sunlit[:, None]
         data["sun_sensor"] = (("time", "face"), 400 * lit * [1, 0.3, 1] + 20 + draw.normal(0, 6, (n, 3)))
@@ -199,11 +201,9 @@ def verdict(usable=True, extras=True):
 
 
 PROVENANCE = {
-    "fieldline": "0.1.0",
-    "telemetry": {"name": "flight.csv", "sha256": "ab" * 32},
-    "orbit": {"name": "sat.tle", "sha256": "cd" * 32},
+    "versions": {"fieldline": "0.1.0", "numpy": "2.0"},
+    "inputs": {"telemetry": {"name": "flight.csv", "sha256": "ab" * 32}, "orbit": {"name": "sat.tle", "sha256": "cd" * 32}},
     "recognition": [{"column": "mag_x_nT", "quantity": "field", "axis": "x", "unit": "nT"}],
-    "packages": {"numpy": "2.0", "scipy": "1.13"},
 }
 
 

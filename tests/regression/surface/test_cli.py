@@ -66,6 +66,13 @@ def test_four_files_are_written_and_named(asked, tmp_path, capsys):
     assert "refine" in err and "two of two" in err and "wrote" not in err
 
 
+def test_the_columns_that_may_be_used_are_the_estimators():
+    from fieldline.cli.attitude import USES
+    from fieldline.estimation import estimate
+
+    assert set(USES) == set(estimate.USES)
+
+
 def test_the_settings_reach_the_estimator(asked):
     options = "--model wmm2025 --use gyro --calibration bias --seed 7 --inertia 0.03,0.03,0.006 --quiet"
     assert attitude(*options.split()) == 0

@@ -40,7 +40,7 @@ def test_every_chapter_is_there(html):
 
 def test_every_figure_says_what_to_look_for_and_what_it_shows(html):
     figures = re.findall(r"<figure>.*?</figure>", html, flags=re.S)
-    assert len(figures) == 11
+    assert len(figures) == 12
     for one in figures:
         assert re.search(r'<svg role="img" aria-label="[^"]{20,}"', one)
         assert re.search(r"<figcaption>.{20,}</figcaption>", one, flags=re.S)

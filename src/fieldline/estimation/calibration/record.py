@@ -177,6 +177,7 @@ class Calibration:
             "gain_on": self.terms.gain,
             "gain_knots_s": self.gain_knots_s.tolist(),
             "gain_values": self.gain_values.tolist(),
+            **self._gain_curve(),
             "parameters": [
                 {"name": n, "value": float(v), "std": float(s)}
                 for n, v, s in zip(self.parameter_names, self.values, std, strict=True)
@@ -204,6 +205,13 @@ class Calibration:
                 for c in self.candidates
             ],
         }  # fmt: skip
+
+    def _gain_curve(self) -> dict:
+        """The gain's course between its knots, for drawing; nothing without a gain."""
+        if self.terms.gain == "none":
+            return {}
+        seconds = np.linspace(self.gain_knots_s[0], self.gain_knots_s[-1], 200)
+        return {"gain_curve_s": seconds.tolist(), "gain_curve": self.gain(seconds).tolist()}
 
 
 def parameter_names(terms: Terms) -> tuple[str, ...]:
