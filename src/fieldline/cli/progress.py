@@ -75,12 +75,12 @@ class TerminalProgress:
 def _bars() -> Any:
     """Rich's bars, which vanish when done; ordinary prints appear above them."""
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
     columns = (
         TextColumn("{task.description}"),
         BarColumn(bar_width=24),
-        MofNCompleteColumn(),
+        TaskProgressColumn(),
         TextColumn("{task.fields[words]}"),
     )
     return Progress(*columns, console=Console(stderr=True), transient=True, refresh_per_second=10)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from fieldline.report.geometry import body_axes_from_nadir_deg, roll_pitch_yaw_deg
@@ -10,6 +12,7 @@ from fieldline.report.series import legend, line, points, room, spread
 from fieldline.report.theme import AXES, AXIS_COLOURS, FOURTH, GREY, Picture, label_outer, panels
 
 DEG = 180.0 / np.pi
+ATTITUDE_DOTS = 20_000  # of a long arc, evenly; each has ten dots in the figure
 
 
 def rate_picture(record: Record) -> Picture:
@@ -44,27 +47,19 @@ def rate_picture(record: Record) -> Picture:
 
 
 def attitude_picture(record: Record) -> Picture:
-    """Quaternion, angles to the orbital axes and to nadir, each for the whole arc and a short piece; below, one sigma."""
-    q = record.values("q_bi")
-    angles = roll_pitch_yaw_deg(q, record.values("position_i"), record.values("velocity_i"))
-    nadir = body_axes_from_nadir_deg(q, record.values("position_i"))
+    """Quaternion, angles to the orbital axes and to nadir, each for the whole arc and a short piece."""
     figure, axes = panels(3, 2, height_in=5.6, widths=(1.75, 1.0), column_gap=0.11, row_gap=0.3)
-    window = record.minute()
-    quaternion_colours = (*AXIS_COLOURS, FOURTH)
-    for column, (part, size) in enumerate(((slice(None), 0.0), (window, 4.5))):
-        time = record.time[part]
-        for k in range(4):
-            points(axes[0, column], time, q[part, k], quaternion_colours[k], f"q{'xyzw'[k]}", size=size)
-        for k in range(3):
-            points(axes[1, column], time, angles[part, k], AXIS_COLOURS[k], ("roll", "pitch", "yaw")[k], size=size)
-            points(axes[2, column], time, nadir[part, k], AXIS_COLOURS[k], f"body {AXES[k]}", size=size)
-        for row, (low, high, step) in enumerate(((-1, 1, 0.5), (-180, 180, 90), (0, 180, 45))):
-            margin = 0.04 * (high - low)
-            axes[row, column].set_ylim(low - margin, high + margin)
-            axes[row, column].set_yticks(np.arange(low, high + step / 2, step))
-            axes[row, column].tick_params(labelleft=column == 0)
-            if len(time) > 1:
-                axes[row, column].set_xlim(time[0], time[-1])
+    stride = max(len(record.seconds) // ATTITUDE_DOTS, 1)
+    for column, (part, size) in enumerate(((slice(None, None, stride), 0.0), (record.minute(), 4.5))):
+        _draw_attitude(axes[:, column], record, part, size)
+        axes[0, column].set_ylim(-1.08, 1.08)
+        axes[0, column].set_yticks((-1, -0.5, 0, 0.5, 1))
+        axes[1, column].set_ylim(-195, 195)
+        axes[1, column].set_yticks((-180, -90, 0, 90, 180))
+        axes[2, column].set_ylim(-7, 187)
+        axes[2, column].set_yticks((0, 45, 90, 135, 180))
+        for one in axes[:, column]:
+            one.tick_params(labelleft=column == 0)
     titles = ("quaternion q_bi, scalar last", "against the orbital axes", "angle of the body axes from nadir")
     for row, (title, unit) in enumerate(zip(titles, ("", "[deg]", "[deg]"), strict=True)):
         axes[row, 0].set_title(title)
@@ -82,6 +77,21 @@ def attitude_picture(record: Record) -> Picture:
     )
 
 
+def _draw_attitude(column: Any, record: Record, part: slice, size: float) -> None:
+    """One column: quaternion, roll-pitch-yaw, angles from nadir, of a part of the samples."""
+    q, position, velocity = (record.values(name)[part] for name in ("q_bi", "position_i", "velocity_i"))
+    angles, nadir = roll_pitch_yaw_deg(q, position, velocity), body_axes_from_nadir_deg(q, position)
+    time = record.time[part]
+    for k, colour in enumerate((*AXIS_COLOURS, FOURTH)):
+        points(column[0], time, q[:, k], colour, f"q{'xyzw'[k]}", size=size)
+    for k, colour in enumerate(AXIS_COLOURS):
+        points(column[1], time, angles[:, k], colour, ("roll", "pitch", "yaw")[k], size=size)
+        points(column[2], time, nadir[:, k], colour, f"body {AXES[k]}", size=size)
+    if len(time) > 1:
+        for one in column:
+            one.set_xlim(time[0], time[-1])
+
+
 def uncertainty_picture(record: Record) -> Picture:
     """One sigma of attitude and rate over time, body axes."""
     attitude, rate = record.values("attitude_std_b", DEG), record.values("omega_std_b", DEG)
@@ -89,7 +99,7 @@ def uncertainty_picture(record: Record) -> Picture:
     for one, values, title in zip(axes[0], (attitude, rate), ("attitude, 1σ [deg]", "rate, 1σ [deg/s]"), strict=True):
         for k in range(3):
             line(one, record.time, values[:, k], AXIS_COLOURS[k], f"about {AXES[k]}", gap=record.widest)
-        one.set_ylim(0.0, 1.08 * max(float(np.nanquantile(values, 0.999)), 1e-9))
+        _limit(one, values)
         one.set_xlim(record.time[0], record.time[-1])
         one.set_xlabel(record.clock.label)
         one.set_title(title)
@@ -103,3 +113,20 @@ def uncertainty_picture(record: Record) -> Picture:
         f"One standard deviation of attitude and rate over time; medians of the attitude {middle} degrees about x, y, z.",
         figure,
     )
+
+
+def _limit(axes: Any, values: np.ndarray) -> None:
+    """From zero where the values are alike; logarithmic where the worst is far above the usual."""
+    known = values[np.isfinite(values) & (values > 0.0)]
+    if not len(known):
+        return
+    worst = float(known.max())
+    if worst < 12.0 * float(np.median(known)):
+        axes.set_ylim(0.0, 1.08 * worst)
+        return
+    axes.set_yscale("log")
+    low, high = 0.8 * float(known.min()), 1.3 * worst
+    axes.set_ylim(low, high)
+    axes.set_yticks([m * 10.0**k for k in range(-6, 4) for m in (1, 3) if low < m * 10.0**k < high])
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.yaxis.set_minor_formatter(lambda value, _: "")
