@@ -19,6 +19,7 @@ from fieldline.errors import InputError
 from fieldline.estimation.natanson.constant_rate import Status, constant_rate_roots, projections, rate_along_field
 from fieldline.estimation.natanson.derivatives import Derivatives, finite_differences, seen_in_body
 from fieldline.estimation.natanson.general import b_dot_torque, rigid_body_roots
+from fieldline.estimation.natanson.window_fit import fit_window, starts_on_circle
 
 RANDOM = [{"attitude": "random", "seed": k, "ascending_node_deg": 97.0 * k, "argument_deg": 151.0 * k} for k in range(20)]
 DIGIT = 6.44e-7  # the paper's 6.44 mG
@@ -106,8 +107,6 @@ def test_three_points_with_the_longer_loss():
 
 def test_both_roots_solve_three_samples_exactly():
     """Why 3-14 cannot choose: refined on the three samples alone, the false root too leaves nothing of the residual."""
-    from fieldline.estimation.natanson.window_fit import fit_window
-
     arc = run(step_s=120, quantisation_tesla=0.0, **RANDOM[3])
     exact = 0
     solved = np.flatnonzero(arc.status.values == Status.SOLVED)
@@ -179,6 +178,22 @@ def test_smoothing_and_window_beat_three_samples_on_the_same_digits():
     # Digits are no white noise over ten minutes: within a factor of two of what they would be as such.
     foretold = np.concatenate([a.sigma_fit.values for a in arcs])
     assert 0.5 < np.nanmedian(np.concatenate([a.error_fit.values for a in arcs])) / np.nanmedian(foretold) < 1.5
+
+
+@pytest.mark.parametrize("window_s, reference", [(960, 0.30), (1920, 0.06)])
+def test_no_prior_at_all(window_s, reference):
+    """A bank of eight at rest on the circle: the reference has 97.5 % at 960 s and 100 % at 1920 s; here all converge."""
+    errors = []
+    for case in RANDOM:
+        arc = erbs_like_arc(**case)
+        for k in (150, 290):
+            window = slice(k - window_s // 16, k + window_s // 16 + 1)
+            samples = arc.seconds[window], arc.measured_b[window], arc.field_i[window]
+            starts = starts_on_circle(arc.measured_b[k], arc.field_i[k], 8), np.zeros((8, 3))
+            fit = fit_window(*samples, *starts, noise_tesla=DIGIT_RMS, epoch_s=arc.seconds[k])
+            errors.append(attitude_error_deg(arc.q_bi[k], fit.q_bi[0]))
+    assert np.max(errors) < 5.0
+    assert np.median(errors) < reference
 
 
 def test_earth_pointing_window():
