@@ -53,7 +53,7 @@ class Arc:
 
     def series(self, values: np.ndarray | None) -> Series:
         """The arc as kernels take it."""
-        values = self.calibration.values if values is None else values
+        values = self.calibration.values if values is None or not len(values) else values
         return make_series(
             self.telemetry.seconds,
             self.field_b(values),
@@ -62,6 +62,21 @@ class Arc:
             self.telemetry.usable,
             self.gyro_b,
         )
+
+
+    def volume(self, values: np.ndarray, rows: slice) -> float:
+        """Sum over the usable rows of log |d field_b / d field_s|, for `polish`."""
+        if not len(values):
+            return 0.0
+        calibration = dataclasses.replace(self.calibration, values=values)
+        telemetry = self.telemetry
+        gain = calibration.gain_at(telemetry.seconds[rows], epoch_utc=telemetry.epoch_utc, **self._columns_at(rows))
+        sign, size = np.linalg.slogdet(calibration.matrix)
+        # a mirrored matrix is no calibration
+        return float((3.0 * np.log(np.maximum(gain, 1e-9)) + size)[telemetry.usable[rows]].sum()) if sign > 0 else -np.inf
+
+    def _columns_at(self, rows: slice) -> dict:
+        return {name: column[rows] for name, column in self.columns.items()}
 
 
 def estimate_attitude(
@@ -107,7 +122,7 @@ def estimate_attitude(
     arc, free = _calibrated(telemetry, reference, calibration, use, report)
     inertia = None if inertia_kg_m2 is None else np.reshape(as_inertia9(inertia_kg_m2)[0], (3, 3))
     values, spread = (arc.calibration.values, arc.calibration.covariance) if free else (None, None)
-    solution = solve(arc.series, values, spread, inertia=inertia, progress=report, seed=seed)
+    solution = solve(arc.series, arc.volume, values, spread, inertia=inertia, progress=report, seed=seed)
     judgement, smoothed = _judged(arc, solution, report)
     verdict = _verdict(arc, solution, smoothed, judgement, use, seed)
     report("judge", 1, 1, verdict["sentence"])
@@ -279,7 +294,8 @@ def _verdict(arc: Arc, solution: Solution, smoothed: Smoothed, judgement: list[d
         "candidates_tried": solution.candidates_tried,
         "motion": _motion(solution),
         "judgement": judgement,
-        "warnings": [*arc.reference.orbit.get("warnings", []), *solution.remarks],
+        "warnings": list(arc.reference.orbit.get("warnings", [])),
+        "remarks": list(solution.remarks),
         "noise": {
             "white_nt": 1e9 * float(smoothed.noise.white),
             "slow_nt": 1e9 * float(smoothed.noise.coloured),

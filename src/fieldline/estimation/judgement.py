@@ -15,6 +15,7 @@ from fieldline.frames.attitude import rotation_error_b
 
 LIT_COSINE, LIT_SHARE, DARK_SHARE = 0.3, 0.2, 0.3
 HIT_LIMIT = 0.9
+SWEEP = 0.7  # of the cosine between a face and the Sun, from which a face is judged
 SPIN_RATE = np.radians(5.0)  # [rad/s] slower bodies have no spin phase to speak of
 SPREAD_LIMIT = 2.8  # sigma of three axes together at which halves still agree: 95 %
 
@@ -70,8 +71,8 @@ def judge_sun(smoothed: Smoothed, sun_i: np.ndarray, sunlit: np.ndarray, sensors
         should, must_not = rows & (cosine > LIT_COSINE), rows & (cosine < 0.0)
         right = (share[should] > LIT_SHARE).sum() + (share[must_not] < DARK_SHARE).sum()
         hits = right / max(should.sum() + must_not.sum(), 1)
-        # a face that never turns well into the Sun has no full scale to be judged by
-        strong = np.quantile(cosine[rows], 0.95) > 0.7
+        # a face that the Sun does not sweep over has no full scale to be judged by
+        strong = bool(np.ptp(np.quantile(cosine[rows], [0.05, 0.95])) > SWEEP)
         if strong:
             faces[face] = (reading, rows)
         words = "of sunlit samples: lit where it should be, dark where it should be"

@@ -1,9 +1,12 @@
 """Constants of a flight found with the attitude: calibration, inertia ratios, residual dipole.
 
-    maximise over theta   h log p(innovations | theta)  -  1/2 (theta - prior)^T P^-1 (theta - prior)             (1)
+    maximise over theta   h ( log p(innovations | theta) + V(theta) )  -  1/2 (theta - prior)^T P^-1 (theta - prior)  (1)
     h = 1 / (1 + 2 sum_k r_k^2)                                                                                 (2)
 
-by Gauss-Newton on the filter's whitened innovations: their derivative to theta is a difference of two runs of the filter,
+    V = sum_k log | d field_b / d field_s |_k                                                                   (3)
+
+(3) makes it a likelihood of the readings: without it, a matrix that shrinks the readings shrinks their noise and wins.
+Climbed by Gauss-Newton on the filter's whitened innovations: their derivative to theta is a difference of two runs of the filter,
 which re-estimates attitude, rate and slow error by itself. So a vector recalibration (bias and symmetric matrix, twelve
 numbers of which three are the attitude's) costs one run per number, and a step is taken only if (1) grows: a loop from a
 wrong basin stops instead of running away.
@@ -96,11 +99,18 @@ def gather_constants(calibration_values, calibration_covariance, shape, dipole, 
 
 
 def polish(
-    constants: Constants, series_of: Callable[[np.ndarray], Series], start: np.ndarray, noise: Noise, like: RateModel, *, rounds=5
+    constants: Constants,
+    series_of: Callable[[np.ndarray], Series],
+    volume_of: Callable[[np.ndarray], float],
+    start: np.ndarray,
+    noise: Noise,
+    like: RateModel,
+    *,
+    rounds: int = 5,
 ) -> tuple[Constants, float]:
     """Constants that maximise (1), with their covariance, and the gain of (1).
 
-    series_of(calibration numbers) gives the arc calibrated with them; start (7,) is the state at its first row.
+    series_of(calibration numbers) gives the arc calibrated with them, volume_of the V of (3); start (7,) is the state at its first row.
     """
     if constants.values.size == 0:
         return constants, 0.0
@@ -114,6 +124,7 @@ def polish(
         trial = _with(constants, values)
         white, total = innovations(series_of(values[: constants.calibrated]), start, noise, trial.model(like))
         off = (values - constants.prior_mean) / scale
+        total += volume_of(values[: constants.calibrated])
         return np.nan_to_num(white), share * total - 0.5 * off @ precision @ off
 
     values, (white, score) = constants.values, run(constants.values)
@@ -124,6 +135,9 @@ def polish(
         flat = (slopes * weight[..., None]).reshape(-1, values.size)
         normal = share * flat.T @ slopes.reshape(-1, values.size) + precision
         gradient = -share * flat.T @ white.reshape(-1) - precision @ ((values - constants.prior_mean) / scale)
+        first_v, second_v = _volume_slopes(volume_of, values, scale, constants.calibrated)
+        gradient[: constants.calibrated] += share * first_v
+        normal[np.arange(constants.calibrated), np.arange(constants.calibrated)] += share * second_v
         step = np.linalg.solve(normal, gradient)
         taken = _line_search(run, values, step * scale, score)
         if taken is None:
@@ -171,6 +185,20 @@ def _slopes(run, values: np.ndarray, white: np.ndarray, scale: np.ndarray, gate:
             step *= 0.05 / max(size, 1e-6)
         slopes[:, :, k] = change / step
     return slopes
+
+
+def _volume_slopes(volume_of, values: np.ndarray, scale: np.ndarray, calibrated: int) -> tuple[np.ndarray, np.ndarray]:
+    """First derivatives of (3) to the calibration numbers over their scale, and minus its second ones where that is positive."""
+    first, second = np.zeros(calibrated), np.zeros(calibrated)
+    base = values[:calibrated]
+    middle = volume_of(base) if calibrated else 0.0
+    for k in range(calibrated):
+        step = np.zeros(calibrated)
+        step[k] = 0.01 * scale[k]
+        above, below = volume_of(base + step), volume_of(base - step)
+        first[k] = (above - below) / 0.02
+        second[k] = max(0.0, -(above - 2.0 * middle + below) / 1e-4)
+    return first, second
 
 
 def _line_search(run, values, step, score):

@@ -17,7 +17,7 @@ from fieldline.errors import NoEstimateError
 from fieldline.estimation.batch import Motion
 from fieldline.estimation.kalman import Noise
 from fieldline.estimation.natanson.candidates import natanson_candidates
-from fieldline.estimation.polish import Constants, gather_constants, polish
+from fieldline.estimation.polish import Constants, effective_share, gather_constants, polish
 from fieldline.estimation.refine import Contender, contend, settle
 from fieldline.estimation.series import Series, part
 from fieldline.estimation.smoothing import Smoothed, smooth
@@ -49,6 +49,7 @@ class Solution:
 
 def solve(
     series_of: SeriesOf,
+    volume_of: Callable[[np.ndarray, slice], float],
     calibration_values: np.ndarray | None,
     calibration_covariance: np.ndarray | None,
     *,
@@ -57,6 +58,8 @@ def solve(
     seed: int,
 ) -> Solution:
     """The motion of an arc. series_of(calibration numbers) is the arc calibrated with them; None: nothing to recalibrate.
+
+    volume_of(calibration numbers, rows) is V of `polish` over some rows of the arc.
 
     Errors: NoEstimateError where no start survives the filter.
     """
@@ -67,7 +70,7 @@ def solve(
     settled = _settled(series, contenders, floor)
     winner = settled[0]
     progress("refine", 0.4, 1.0, winner.candidate.words)
-    smoothed, constants = _polished(series_of, series, winner, calibration_values, calibration_covariance, floor)
+    smoothed, constants = _polished(series_of, volume_of, series, winner, calibration_values, calibration_covariance, floor)
     series = series_of(_calibration_part(constants, calibration_values))
     progress("refine", 0.7, 1.0, "uncertainty")
     smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=2)
@@ -134,7 +137,8 @@ def _settled(series: Series, contenders: list[Contender], floor: float) -> list[
         kind = [c for c in contenders if c.smoothed.model.rigid == rigid]
         if kind:
             settled.append(_settle_on_part(series, kind[0], floor))
-    return sorted(settled, key=lambda c: -_penalised(c, series))
+    share = min((effective_share(c.smoothed.white) for c in settled), default=1.0)
+    return sorted(settled, key=lambda c: -_penalised(c, series, share))
 
 
 def _settle_on_part(series: Series, contender: Contender, floor: float) -> Contender:
@@ -147,13 +151,16 @@ def _settle_on_part(series: Series, contender: Contender, floor: float) -> Conte
     return replace(contender, smoothed=smooth(series, contender.smoothed.start, noise, model, passes=2))
 
 
-def _penalised(contender: Contender, series: Series) -> float:
-    """Log-likelihood less half ln n for each number that the rigid body fitted besides the state."""
+def _penalised(contender: Contender, series: Series, share: float) -> float:
+    """Log-likelihood less half ln n for each number that the rigid body fitted besides the state.
+
+    `share` is what the innovations' memory leaves of the samples' number and so of the likelihood.
+    """
     free = BODY_COUNT if contender.candidate.motion.shape is not None else 0
-    return contender.log_likelihood - 0.5 * free * np.log(max(series.used.sum(), 2))
+    return share * contender.log_likelihood - 0.5 * free * np.log(max(share * series.used.sum(), 2.0))
 
 
-def _polished(series_of: SeriesOf, series: Series, winner: Contender, values, covariance, floor: float):
+def _polished(series_of: SeriesOf, volume_of, series: Series, winner: Contender, values, covariance, floor: float):
     """Constants and noise, in turn, as long as the likelihood grows by more than a hair."""
     motion, smoothed = winner.candidate.motion, winner.smoothed
     rigid = smoothed.model.rigid
@@ -165,7 +172,9 @@ def _polished(series_of: SeriesOf, series: Series, winner: Contender, values, co
     start = np.concatenate([smoothed.q_bi[rows.start], smoothed.omega_b[rows.start]])
     noise, like = smoothed.noise, smoothed.model
     for _ in range(POLISH_ROUNDS):
-        constants, gained = polish(constants, lambda v: part(series_of(v), rows), start, noise, like)
+        constants, gained = polish(
+            constants, lambda v: part(series_of(v), rows), lambda v: volume_of(v, rows), start, noise, like
+        )
         arc = part(series_of(constants.values[: constants.calibrated]), rows)
         noise, like, _ = tune(arc, start, noise, constants.model(like), min(floor, magnitude_noise(arc)))
         start = smooth(arc, start, noise, like).start

@@ -27,6 +27,7 @@ BRANCH_TURN = np.radians(6.0)  # of the field, from where the angle about it beg
 FINAL_TURN = np.radians(50.0)
 AZIMUTHS = 8
 MODEL_ERROR = 0.01  # of the field: what a smooth motion may miss by its own simplicity
+LONGEST_TURN = 500.0  # [rad] of a fit without process noise; the filter's own polish goes on from there
 SAME_ANGLE = np.radians(3.0)
 
 
@@ -183,14 +184,16 @@ def _grown(series, centre: int, rows: int, motion: Motion, noise_tesla: float, f
 
 
 def lengthened(series: Series, candidate: Candidate, noise_tesla: float) -> Candidate:
-    """The candidate's motion fitted over windows that grow to the whole arc, as long as it holds there."""
+    """The candidate's motion fitted over windows that grow to the whole arc or LONGEST_TURN, as long as it holds there."""
     n = len(series.seconds)
     rows, motion = candidate.rows, candidate.motion
     if (motion.shape is not None or motion.inertia is not None) and motion.dipole is None:
         motion = replace(motion, dipole=np.zeros(3))
     held = rows
-    while rows < n:
-        rows = min(n, int(np.ceil(GROWTH * rows)))
+    step = float(np.median(np.diff(series.seconds)))
+    most = min(n, max(rows, int(LONGEST_TURN / max(np.linalg.norm(motion.omega_b) * step, 1e-9))))
+    while GROWTH * rows < most or rows < most == n:
+        rows = min(most, int(np.ceil(GROWTH * rows)))
         longer = _fit(series, candidate.row, rows, motion, noise_tesla)
         if longer.chi2 > max(2.0, 3.0 * motion.chi2):
             break

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldline.errors import InputError
 from fieldline.estimation.calibration.clock import ClockScan
-from fieldline.estimation.calibration.model import Samples, Terms, corrected, field_std
+from fieldline.estimation.calibration.model import Samples, Terms, corrected, field_std, gain_of
 from fieldline.estimation.calibration.selection import Candidate
 
 COLUMNS = {
@@ -107,6 +107,14 @@ class Calibration:
         for piece, part in samples.chunks():
             out[piece] = corrected(self.terms, self.values, part)[0]
         return out
+
+    def gain_at(
+        self, seconds, *, temperature_k=None, dipole_command_b=None, solar_current=None, epoch_utc=None
+    ) -> np.ndarray:
+        """(n,) the whole gain, slow and by temperature, at samples; arguments as of `apply`."""
+        readings = np.zeros((len(np.atleast_1d(seconds)), 3))
+        samples = self._samples(seconds, readings, temperature_k, dipole_command_b, solar_current, epoch_utc)
+        return gain_of(self.terms, self.values, samples)
 
     def propagated_std(
         self, seconds, field_s, *, temperature_k=None, dipole_command_b=None, solar_current=None, epoch_utc=None

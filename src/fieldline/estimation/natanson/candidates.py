@@ -26,13 +26,19 @@ TURN_MAX_RAD = 0.35  # between samples; beyond it a window of a few samples span
 ERROR_MAX_RAD = 1.0
 CLEARLY_WORSE = 1.2  # of the noise: residuals below that rank by expected error, since short windows always fit well
 SAME_RAD = 0.01
+ROWS = 20_000  # longer records are averaged down to about as many
+BLOCK_TURN_RAD = 0.02
+CENTRES = 300  # samples at which roots are looked for: a long record costs no more than a short one
 TURNS_MAX_RAD = 4.0 * np.pi  # in a window: a polynomial of degree four cannot follow more, so such a root is an artefact
 ORDER = 4
 STRETCHES = (1.0, 2.0)  # windows, in units of the one of least derivative error: bias cancels, so longer ones gain
 
 
 class Candidate(NamedTuple):
-    """An attitude and rate at sample `index`; loss is the rms residual per axis over the window [T]."""
+    """An attitude and rate at sample `index`; loss is the rms residual per axis over the window [T].
+
+    A record of more than ROWS samples is averaged in short blocks first, and the residual is that of the means.
+    """
 
     index: int
     q_bi: np.ndarray  # (4,)
@@ -70,6 +76,8 @@ def natanson_candidates(
             reason=f"the field turns {np.degrees(turn_between):.0f} deg from sample to sample in body axes: its derivatives "
             f"are aliased (at most {np.degrees(TURN_MAX_RAD):.0f} deg); find the spin from the spectrum instead"
         )
+    times, body, inertial, kept, block = _thinned(times, body, inertial, kept, turn_between)
+    noise_tesla = noise_tesla / np.sqrt(block)
     interval, span = float(np.median(np.diff(times))), float(times[-1] - times[0])
     turn_rad_s = turning_rate(times, body, noise_tesla)
     magnitude = float(np.median(np.linalg.norm(body, axis=1)))
@@ -83,6 +91,23 @@ def natanson_candidates(
         return Candidates(reason=_too_noisy(noise_tesla, min(STRETCHES[-1] * window, longest_window_s, 0.7 * span), least))
     found.sort(key=lambda pair: (max(pair[1].loss, CLEARLY_WORSE * noise_tesla), pair[0]))
     return Candidates(row for _, row in found)
+
+
+def _thinned(times, body, inertial, kept, turn_between):
+    """Means over odd blocks of a record longer than ROWS, of its middle samples; blocks with gaps are left out.
+
+    Returns also the block's length. Body and inertial field are averaged alike, over BLOCK_TURN_RAD at most.
+    """
+    block = min(-(-times.size // ROWS), int(BLOCK_TURN_RAD / max(turn_between, 1e-9)))
+    block = max(1, block - 1 + block % 2)
+    if block == 1:
+        return times, body, inertial, kept, 1
+    count = times.size // block
+    rows = [x[: count * block].reshape(count, block, *x.shape[1:]) for x in (times, body, inertial, kept)]
+    lengths = rows[0][:, -1] - rows[0][:, 0]
+    whole = lengths < 1.01 * np.median(lengths)
+    means = [x[whole].mean(axis=1) for x in rows[:3]]
+    return *means, rows[3][whole, block // 2], block
 
 
 def _too_noisy(noise_tesla, window_s, error_rad) -> str:
@@ -117,7 +142,8 @@ def _at_window(times, body, inertial, noise_tesla, magnitude, length_s, interval
     """Fitted candidates with one window, and the least expected error of Phi [rad] among its epochs."""
     if 2 * int(0.5 * length_s / interval_s + 1e-9) <= ORDER:
         return [], np.inf
-    smooth_b, smooth_i = (local_polynomial(times, x, window_s=length_s, order=ORDER) for x in (body, inertial))
+    at = np.unique(np.linspace(0, times.size - 1, min(times.size, CENTRES)).astype(int))
+    smooth_b, smooth_i = (local_polynomial(times, x, window_s=length_s, order=ORDER, at=at) for x in (body, inertial))
     roots = constant_rate_roots(smooth_b, smooth_i, beyond="nearest")
     noise = polynomial_error(length_s, interval_s, noise_tesla, magnitude, 0.0, ORDER).noise[1]
     error = angle_error(roots, smooth_b.second, smooth_i.second, noise)
@@ -126,7 +152,8 @@ def _at_window(times, body, inertial, noise_tesla, magnitude, length_s, interval
     rows = []
     for stretch in np.array_split(np.flatnonzero(np.isfinite(error)), epochs):
         if stretch.size and error[best := stretch[np.argmin(error[stretch])]] < ERROR_MAX_RAD:
-            rows += _fitted(times, body, inertial, noise_tesla, length_s, best, roots)
+            starts = roots.q_bi[best], roots.omega_b[best]
+            rows += _fitted(times, body, inertial, noise_tesla, length_s, int(at[best]), starts)
     return rows, float(error.min(initial=np.inf))
 
 
@@ -140,16 +167,16 @@ def angle_error(roots, second_b, second_i, second_noise) -> np.ndarray:
         return np.where(np.isfinite(ratio), ratio / clear, np.inf)
 
 
-def _fitted(times, body, inertial, noise_tesla, length_s, index, roots) -> list[tuple[float, Candidate]]:
+def _fitted(times, body, inertial, noise_tesla, length_s, index, starts) -> list[tuple[float, Candidate]]:
     """Expected error [rad] and candidate for each root of one epoch, fitted over the window that gave it."""
     near = np.abs(times - times[index]) <= 0.5 * length_s
     window = times[near], body[near], inertial[near]
-    fit = fit_window(*window, roots.q_bi[index], roots.omega_b[index], noise_tesla=noise_tesla, epoch_s=times[index])
+    fit = fit_window(*window, *starts, noise_tesla=noise_tesla, epoch_s=times[index])
     rows: list[tuple[float, Candidate]] = []
     for m, q in enumerate(fit.q_bi):
         sigma = float(np.sqrt(np.trace(fit.covariance[m][:3, :3])))
         again = any(abs(float(row.q_bi @ q)) > np.cos(0.5 * SAME_RAD) for _, row in rows)
         followed = float(np.linalg.norm(fit.omega_b[m])) * length_s < TURNS_MAX_RAD
         if sigma < ERROR_MAX_RAD and followed and not again:
-            rows.append((sigma, Candidate(int(index), q, fit.omega_b[m], float(fit.residual_rms_tesla[m]))))
+            rows.append((sigma, Candidate(index, q, fit.omega_b[m], float(fit.residual_rms_tesla[m]))))
     return rows

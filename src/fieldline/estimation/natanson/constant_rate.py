@@ -148,7 +148,7 @@ def constant_rate_roots(derivatives_b, derivatives_i, *, beyond: str = "nan") ->
         angle[status == Status.NO_REAL_ROOT] = np.nan
     angle = np.mod(angle, 2.0 * np.pi)
     omega = rate_at(circle, angle, rate_along_field(circle, second, angle))
-    quaternion = _quaternions(attitude_at(circle, angle))
+    quaternion = quaternions_of(attitude_at(circle, angle))
     if beyond == "previous":
         _carry(status == Status.NO_REAL_ROOT, angle, quaternion, omega)
     return Roots(angle, quaternion, omega, np.where(np.isfinite(omega), 0.0, np.nan), 1.0 - ratio**2, status, circle)
@@ -172,7 +172,7 @@ def _carry(gaps, *rows) -> None:
         values[known] = values[source[known]]
 
 
-def _quaternions(matrices) -> np.ndarray:
+def quaternions_of(matrices) -> np.ndarray:
     """(n, m, 4) of (n, m, 3, 3), NaN where a matrix is not finite."""
     finite = np.isfinite(matrices).all(axis=(-1, -2))
     quaternions = np.full((*matrices.shape[:-2], 4), np.nan)

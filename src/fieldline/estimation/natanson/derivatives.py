@@ -78,10 +78,11 @@ def finite_differences(seconds, field, *, step_samples: int = 1, points: int = 3
     return Derivatives(values, _stencil(values, offsets, first / step), _stencil(values, offsets, second / step**2))
 
 
-def local_polynomial(seconds, field, *, window_s: float, order: int = 4) -> Derivatives:
+def local_polynomial(seconds, field, *, window_s: float, order: int = 4, at=None) -> Derivatives:
     """Savitzky-Golay: value and derivatives of the least-squares polynomial over `window_s`, centred on each sample.
 
     Times need not be equally spaced; a window that is not filled to both ends, or to half of its samples, gives NaN.
+    `at` (m,) names the samples wanted, and the result has m rows: for long records, of which a few epochs will do.
     """
     times, values = _checked(seconds, field)
     interval = float(np.median(np.diff(times)))
@@ -91,11 +92,14 @@ def local_polynomial(seconds, field, *, window_s: float, order: int = 4) -> Deri
             f"a window of {window_s:g} s holds {2 * half + 1} samples, too few for a polynomial of order {order} with a "
             "second derivative; lengthen window_s."
         )
-    if _is_uniform(times):
-        offsets = np.arange(-half, half + 1)
-        weights = polynomial_weights(offsets * interval, order)
+    wanted = np.arange(times.size) if at is None else np.asarray(at, dtype=int)
+    if not _is_uniform(times):
+        return _local_fits(times, values, wanted, half * interval, interval, order)
+    offsets = np.arange(-half, half + 1)
+    weights = polynomial_weights(offsets * interval, order)
+    if at is None:
         return Derivatives(*(_stencil(values, offsets, w) for w in weights))
-    return _local_fits(times, values, half * interval, interval, order)
+    return _stencils_at(values, wanted, offsets, weights)
 
 
 def smoothing_spline(seconds, field, *, cutoff_rad_s: float) -> Derivatives:
@@ -223,15 +227,24 @@ def _stencil(values, offsets, weights) -> np.ndarray:
     return out
 
 
-def _local_fits(times, values, half_s, interval, order) -> Derivatives:
+def _stencils_at(values, at, offsets, weights) -> Derivatives:
+    """`_stencil` at samples `at` only."""
+    rows = np.full((3, at.size, 3), np.nan)
+    for m, k in enumerate(at):
+        if k + offsets[0] >= 0 and k + offsets[-1] < len(values):
+            rows[:, m] = weights @ values[k + offsets[0] : k + offsets[-1] + 1]
+    return Derivatives(*rows)
+
+
+def _local_fits(times, values, at, half_s, interval, order) -> Derivatives:
     """`local_polynomial` on unequal times, one small fit a sample."""
-    rows = np.full((3, *values.shape), np.nan)
-    low = np.searchsorted(times, times - half_s - 1e-6 * interval)
-    high = np.searchsorted(times, times + half_s + 1e-6 * interval)
-    wanted = max(order + 1, int(half_s / interval))
-    for k, (a, b) in enumerate(zip(low, high, strict=True)):
-        offsets = times[a:b] - times[k]
-        if b - a >= wanted and min(-offsets[0], offsets[-1]) >= half_s - 1.5 * interval:
+    rows = np.full((3, at.size, 3), np.nan)
+    low = np.searchsorted(times, times[at] - half_s - 1e-6 * interval)
+    high = np.searchsorted(times, times[at] + half_s + 1e-6 * interval)
+    least = max(order + 1, int(half_s / interval))
+    for k, (centre, a, b) in enumerate(zip(times[at], low, high, strict=True)):
+        offsets = times[a:b] - centre
+        if b - a >= least and min(-offsets[0], offsets[-1]) >= half_s - 1.5 * interval:
             rows[:, k] = polynomial_weights(offsets, order) @ values[a:b]
     return Derivatives(*rows)
 

@@ -35,7 +35,7 @@ import numpy as np
 from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.errors import InputError
 from fieldline.estimation.natanson.circle import attitude_at, rate_at, uncertainty_circle
-from fieldline.estimation.natanson.constant_rate import Roots, Status, _quaternions, projections
+from fieldline.estimation.natanson.constant_rate import Roots, Status, projections, quaternions_of
 from fieldline.estimation.natanson.trigonometric import common_roots
 from fieldline.mechanics.rigid_body import as_inertia9, gravity_gradient
 
@@ -178,4 +178,4 @@ def _as_roots(circle, angle, along, inertia, torque_b, external, present, solvab
     status[~solvable] = Status.NO_CIRCLE
     status[~present] = Status.NO_DATA
     nowhere = np.full(len(present), np.nan)
-    return Roots(angle, _quaternions(matrices), omega, omega_rate, nowhere, status, circle)
+    return Roots(angle, quaternions_of(matrices), omega, omega_rate, nowhere, status, circle)
