@@ -9,7 +9,6 @@ from fieldline.estimation.natanson.candidates import natanson_candidates, turnin
 from fieldline.estimation.natanson.limits import expected_angle_error, three_sample_verdict
 
 
-
 def arc_of(seed, rate_deg_s, noise=1e-7, **settings):
     return erbs_like_arc(
         attitude="random",
@@ -49,6 +48,17 @@ def test_the_paper_s_digits_and_gaps():
     assert error_deg(arc, rows[0]) < 1.0
     assert all(np.isfinite(field[row.index]).all() for row in rows)
     assert rows.reason == ""
+
+
+def test_a_long_record_is_averaged_and_keeps_its_sample_numbers():
+    arc = arc_of(2, (0.1, 0.2, -0.1), interval_s=0.1, length_s=5600.0)
+    field = arc.measured_b.copy()
+    field[::997] = np.nan
+    rows = natanson_candidates(arc.seconds, field, arc.field_i, 1e-7)
+    assert len(arc.seconds) > 50_000
+    for row in rows[:4]:
+        assert error_deg(arc, row) < 0.1
+        assert row.loss == pytest.approx(1e-7 / np.sqrt(3.0), rel=0.05)  # means of three samples
 
 
 @pytest.mark.parametrize(

@@ -93,6 +93,18 @@ def test_polynomial_allows_for_gaps():
     assert not known[(times > SECONDS[670]) & (times < SECONDS[790])].any()
 
 
+def test_polynomial_at_chosen_samples_is_the_same():
+    value, _, _ = wave()
+    keep = np.random.default_rng(2).random(COUNT) > 0.1
+    at = np.array([0, 40, 700, 1100])
+    for times, field in ((SECONDS, value), (SECONDS[keep], value[keep])):
+        whole = local_polynomial(times, field, window_s=480.0)
+        some = local_polynomial(times, field, window_s=480.0, at=at)
+        for all_rows, rows in zip(whole, some, strict=True):
+            assert np.isnan(rows[0]).all()
+            assert rows[1:] == pytest.approx(all_rows[at[1:]], rel=1e-9, abs=1e-20)
+
+
 def test_spline_keeps_a_quadratic():
     """What the third derivative's penalty does not see it must return exactly."""
     field = np.tile((1e-5 + 2e-9 * SECONDS - 3e-13 * SECONDS**2)[:, None], 3)
