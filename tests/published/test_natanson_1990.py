@@ -272,6 +272,15 @@ def test_case_is_quiet_and_reproducible():
         ({"smoothing": "median"}, "smoothing"),
         ({"attitude": "sun-pointing"}, "attitude"),
         ({"rate_deg_s": (0.0, 0.0, 0.0)}, "random"),
+        ({"rate_deg_s": (1.0, 2.0)}, "three finite numbers"),
+        ({"rate_deg_s": (float("nan"), 0.0, 0.0)}, "three finite numbers"),
+        ({"step_s": "abc"}, "step_s must be a number"),
+        ({"interval_s": 0}, "interval_s"),
+        ({"interval_s": 4000.0}, "interval_s"),
+        ({"quantisation_tesla": -1.0}, "quantisation_tesla"),
+        ({"fit_s": 1e4}, "fit_s"),
+        ({"oscillation_period_s": 0.0, "oscillation": True}, "oscillation_period_s"),
+        ({"seed": -1}, "seed"),
     ],
 )
 def test_bad_settings_are_refused(change, words):

@@ -57,6 +57,25 @@ def turned_kernel(q0, omega_b, dt, q_out):
             q = quat_unit(quat_mul(q, quat_exp(turn(here, there, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), dt))))
 
 
+def number(name: str, value, least: float, most: float = np.inf) -> float:
+    """The value as a float within bounds, or a refusal that names it."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not least <= value <= most:
+        bounds = f"{least:g} or more" if np.isinf(most) else f"{least:g} to {most:g}"
+        raise InputError(f"{name} must be a number, {bounds}; got {value!r}.")
+    return float(value)
+
+
+def three_rates(rate_deg_s) -> np.ndarray:
+    """(3,) [deg/s], or a refusal."""
+    try:
+        rate = np.asarray(rate_deg_s, dtype=float)
+    except (TypeError, ValueError):
+        rate = np.empty(0)
+    if rate.shape != (3,) or not np.isfinite(rate).all():
+        raise InputError(f"rate_deg_s must be three finite numbers, about body x, y and z; got {rate_deg_s!r}.")
+    return rate
+
+
 def circular_orbit(seconds, ascending_node_deg=0.0, argument_deg=0.0) -> tuple[np.ndarray, np.ndarray]:
     """Positions (n, 3) [m] and the unit normal (3,), inertial axes."""
     angle = np.radians(argument_deg) + np.sqrt(EARTH_GM_M3_S2 / RADIUS_M**3) * np.asarray(seconds)
@@ -90,7 +109,7 @@ def first_attitude(attitude: str, rate_deg_s, normal_i, seed: int) -> np.ndarray
     if attitude not in ATTITUDES:
         raise InputError(f'attitude must be "earth-pointing" or "random"; got "{attitude}".')
     if attitude == "random":
-        return Rotation.random(rng=np.random.default_rng(seed)).as_quat()
+        return Rotation.random(rng=np.random.default_rng(int(seed))).as_quat()
     axis = np.asarray(rate_deg_s, dtype=float)
     if not np.linalg.norm(axis) > 0.0:
         raise InputError('an Earth-pointing attitude needs a rate to lay along the orbit\'s normal; use attitude="random".')
@@ -113,6 +132,16 @@ def erbs_like_arc(
     model: str = "IGRF-14",
 ) -> Arc:
     """The arc of the module's docstring, with digits of `quantisation_tesla` (0: none) and white noise on the field."""
+    rate_deg_s = three_rates(rate_deg_s)
+    length_s = number("length_s", length_s, 1.0)
+    interval_s = number("interval_s", interval_s, 1e-3, length_s / 2.0)
+    number("oscillation_deg_s", oscillation_deg_s, 0.0)
+    number("oscillation_period_s", oscillation_period_s, 10.0 * INNER_STEP_S)
+    number("quantisation_tesla", quantisation_tesla, 0.0)
+    number("noise_tesla", noise_tesla, 0.0)
+    for name, angle in (("ascending_node_deg", ascending_node_deg), ("argument_deg", argument_deg)):
+        number(name, angle, -1e6, 1e6)
+    number("seed", seed, 0)
     seconds = interval_s * np.arange(int(length_s / interval_s + 1e-9) + 1)
     time_utc = START_UTC + np.round(seconds * 1e9).astype("timedelta64[ns]")
     position_i, normal_i = circular_orbit(seconds, ascending_node_deg, argument_deg)
@@ -122,7 +151,7 @@ def erbs_like_arc(
     q0 = first_attitude(attitude, rate_deg_s, normal_i, seed)
     q_bi = attitudes(seconds, q0, rate_deg_s, oscillation_deg_s, oscillation_period_s)
     field_b = _in_body(q_bi, field_i)
-    measured = field_b + noise_tesla * np.random.default_rng(seed).standard_normal(field_b.shape)
+    measured = field_b + noise_tesla * np.random.default_rng(int(seed)).standard_normal(field_b.shape)
     if quantisation_tesla > 0.0:
         measured = np.round(measured / quantisation_tesla) * quantisation_tesla
     omega_b = rates(seconds, rate_deg_s, oscillation_deg_s, oscillation_period_s)

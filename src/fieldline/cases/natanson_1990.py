@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.cases.erbs_like import ATTITUDES, Arc, erbs_like_arc
+from fieldline.cases.erbs_like import ATTITUDES, LENGTH_S, Arc, erbs_like_arc, number
 from fieldline.errors import InputError
 from fieldline.estimation.natanson.choice import ROBUST_REACH, constant_rate_loss, least_loss, take
 from fieldline.estimation.natanson.constant_rate import WORDS, Roots, Status, constant_rate_roots
@@ -78,6 +78,9 @@ def run(
     _refuse(choice, CHOICES, "choice")
     _refuse(smoothing, SMOOTHINGS, "smoothing")
     _refuse(attitude, ATTITUDES, "attitude")
+    number("fit_s", fit_s, 0.0, LENGTH_S)
+    number("window_s", window_s, 1e-3, LENGTH_S)
+    number("order", order, 2, 12)
     settings = {k: v for k, v in locals().items() if v is not None}
     arc = erbs_like_arc(
         rate_deg_s=rate_deg_s,
@@ -237,7 +240,7 @@ def _refuse(value, known, name: str) -> None:
 
 def _whole_steps(step_s: float, interval_s: float, count: int) -> int:
     """The step in samples, or a refusal."""
-    steps = step_s / interval_s
+    steps = number("step_s", step_s, 1e-3) / interval_s
     if steps < 1.0 or abs(steps - round(steps)) > 1e-6:
         raise InputError(f"step_s must be a multiple of the sampling interval, {interval_s:g} s; got {step_s:g} s.")
     if 2 * round(steps) >= count:
