@@ -31,6 +31,8 @@ from fieldline.orbit import Orbit, orbit_from_positions
 from fieldline.telemetry import Telemetry
 
 FEWEST = 30  # usable samples
+LARGEST_STRETCH = 3.0  # of the whole arc's uncertainty: half an arc may go astray where the whole one does not
+UNSURE = 0.02  # of the field: a calibration this uncertain is found together with the motion
 USES = ("gyro", *COLUMNS)
 
 
@@ -63,7 +65,6 @@ class Arc:
             self.gyro_b,
         )
 
-
     def volume(self, values: np.ndarray, rows: slice) -> float:
         """Sum over the usable rows of log |d field_b / d field_s|, for `polish`."""
         if not len(values):
@@ -74,6 +75,14 @@ class Arc:
         sign, size = np.linalg.slogdet(calibration.matrix)
         # a mirrored matrix is no calibration
         return float((3.0 * np.log(np.maximum(gain, 1e-9)) + size)[telemetry.usable[rows]].sum()) if sign > 0 else -np.inf
+
+    def unsure(self) -> bool:
+        """Whether the magnitudes left the calibrated field more uncertain than UNSURE of itself."""
+        telemetry = self.telemetry
+        std = self.calibration.propagated_std(
+            telemetry.seconds, telemetry.field_s, epoch_utc=telemetry.epoch_utc, **self.columns
+        )  # fmt: skip
+        return bool(np.median(np.linalg.norm(std[telemetry.usable], axis=1)) > UNSURE * np.median(self.reference.magnitude))
 
     def _columns_at(self, rows: slice) -> dict:
         return {name: column[rows] for name, column in self.columns.items()}
@@ -122,7 +131,9 @@ def estimate_attitude(
     arc, free = _calibrated(telemetry, reference, calibration, use, report)
     inertia = None if inertia_kg_m2 is None else np.reshape(as_inertia9(inertia_kg_m2)[0], (3, 3))
     values, spread = (arc.calibration.values, arc.calibration.covariance) if free else (None, None)
-    solution = solve(arc.series, arc.volume, values, spread, inertia=inertia, progress=report, seed=seed)
+    solution = solve(
+        arc.series, arc.volume, values, spread, unsure=free and arc.unsure(), inertia=inertia, progress=report, seed=seed,
+    )  # fmt: skip
     judgement, smoothed = _judged(arc, solution, report)
     verdict = _verdict(arc, solution, smoothed, judgement, use, seed)
     report("judge", 1, 1, verdict["sentence"])
@@ -191,12 +202,13 @@ def _judged(arc: Arc, solution: Solution, report) -> tuple[list[dict], Smoothed]
         agree = np.sqrt(square) <= SPREAD_LIMIT
         words = f"{stretch:.1f} times the stated 1-sigma"
         if not agree:
+            stretch = min(stretch, LARGEST_STRETCH)
             smoothed = dataclasses.replace(
                 smoothed,
                 attitude_covariance_b=smoothed.attitude_covariance_b * stretch**2,
                 rate_std_b=smoothed.rate_std_b * stretch,
             )
-            words += "; the stated uncertainty of the whole arc has been stretched by that"
+            words += f"; the stated uncertainty of the whole arc has been stretched {stretch:.1f} times"
         lines.append(judge_line("halves of the arc, where they meet", angle, "deg", None, bool(agree), words))
     if telemetry.rate_b is not None and arc.gyro_b is None:
         lines += judge_gyro(smoothed.omega_b, telemetry.rate_b)

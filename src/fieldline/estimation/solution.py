@@ -10,12 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from fieldline.errors import NoEstimateError
 from fieldline.estimation.batch import Motion
 from fieldline.estimation.kalman import Noise
+from fieldline.estimation.motion import RateModel
 from fieldline.estimation.natanson.candidates import natanson_candidates
 from fieldline.estimation.polish import Constants, effective_share, gather_constants, polish
 from fieldline.estimation.refine import Contender, contend, settle
@@ -26,7 +28,9 @@ from fieldline.estimation.systematics import widen, widen_by_field_model
 from fieldline.estimation.tuning import LONGEST, magnitude_noise, middle_rows, tune
 
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
-POLISH_ROUNDS = 3
+POLISH_ROUNDS = 4
+QUIET_ROUNDS = 6
+QUIET_NOISES = (1e-6, 1e-7)  # [rad/s/sqrt(s)]
 BODY_COUNT = 8  # numbers that a free rigid body has and a random walk has not: half of ln n each in its favour
 
 Progress = Callable[[str, float, float, str], None]
@@ -53,13 +57,15 @@ def solve(
     calibration_values: np.ndarray | None,
     calibration_covariance: np.ndarray | None,
     *,
+    unsure: bool = False,
     inertia=None,
     progress: Progress,
     seed: int,
 ) -> Solution:
     """The motion of an arc. series_of(calibration numbers) is the arc calibrated with them; None: nothing to recalibrate.
 
-    volume_of(calibration numbers, rows) is V of `polish` over some rows of the arc.
+    volume_of(calibration numbers, rows) is V of `polish` over some rows of the arc; unsure: the calibration is so uncertain
+    that it must be found together with the motion.
 
     Errors: NoEstimateError where no start survives the filter.
     """
@@ -70,7 +76,9 @@ def solve(
     settled = _settled(series, contenders, floor)
     winner = settled[0]
     progress("refine", 0.4, 1.0, winner.candidate.words)
-    smoothed, constants = _polished(series_of, volume_of, series, winner, calibration_values, calibration_covariance, floor)
+    smoothed, constants = _polished(
+        series_of, volume_of, series, winner, calibration_values, calibration_covariance, floor, unsure
+    )
     series = series_of(_calibration_part(constants, calibration_values))
     progress("refine", 0.7, 1.0, "uncertainty")
     smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=2)
@@ -160,8 +168,73 @@ def _penalised(contender: Contender, series: Series, share: float) -> float:
     return share * contender.log_likelihood - 0.5 * free * np.log(max(share * series.used.sum(), 2.0))
 
 
-def _polished(series_of: SeriesOf, volume_of, series: Series, winner: Contender, values, covariance, floor: float):
-    """Constants and noise, in turn, as long as the likelihood grows by more than a hair."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Polish:
+    """What every polish of an arc needs: how to calibrate, the rows that are read, and the magnitude's residual."""
+
+    series_of: SeriesOf
+    volume_of: Callable[[np.ndarray, slice], float]
+    rows: slice
+    floor: float
+
+    def arc(self, constants: Constants) -> Series:
+        return part(self.series_of(constants.values[: constants.calibrated]), self.rows)
+
+    def step(self, constants: Constants, start: np.ndarray, noise: Noise, like: RateModel) -> tuple[Constants, float]:
+        """One climb of the constants."""
+        return polish(
+            constants,
+            lambda v: part(self.series_of(v), self.rows),
+            lambda v: self.volume_of(v, self.rows),
+            start,
+            noise,
+            like,
+        )
+
+    def score(self, constants: Constants, log_likelihood: float) -> float:
+        """The logarithm of the posterior: likelihood of the readings and prior of the constants."""
+        off = constants.values - constants.prior_mean
+        prior = -0.5 * float(off @ np.linalg.solve(constants.prior_covariance, off)) if off.size else 0.0
+        return log_likelihood + self.volume_of(constants.values[: constants.calibrated], self.rows) + prior
+
+    def climb(self, constants: Constants, start, noise: Noise, like: RateModel, quiet: float | None) -> _Climbed:
+        """Constants and noise in turn; with `quiet`, the rate noise is held there first, then set free."""
+        if quiet is not None:
+            like = like._replace(noise=quiet)
+            for _ in range(QUIET_ROUNDS):
+                arc, model = self.arc(constants), constants.model(like)
+                start = smooth(arc, start, noise, model, passes=3).start
+                noise, _, _ = tune(arc, start, noise, model, min(self.floor, magnitude_noise(arc)), hold_rate=True)
+                constants, gained = self.step(constants, start, noise, like)
+                if gained < 1.0:
+                    break
+        for _ in range(POLISH_ROUNDS):
+            constants, gained = self.step(constants, start, noise, like)
+            arc = self.arc(constants)
+            noise, like, _ = tune(arc, start, noise, constants.model(like), min(self.floor, magnitude_noise(arc)))
+            result = smooth(arc, start, noise, like)
+            start = result.start
+            if gained < 2.0:
+                break
+        return _Climbed(constants, start, noise, like, self.score(constants, result.log_likelihood))
+
+
+class _Climbed(NamedTuple):
+    """The end of one climb."""
+
+    constants: Constants
+    start: np.ndarray
+    noise: Noise
+    like: RateModel
+    score: float
+
+
+def _polished(series_of: SeriesOf, volume_of, series: Series, winner: Contender, values, covariance, floor: float, unsure: bool):
+    """The winner with its constants and noise at the top of the posterior.
+
+    Where the calibration is unsure, the tops are several: a rate that wanders freely agrees with any calibration. The climb
+    is then repeated from rates held quiet, and the highest top counts.
+    """
     motion, smoothed = winner.candidate.motion, winner.smoothed
     rigid = smoothed.model.rigid
     dipole = (np.zeros(3) if motion.dipole is None else motion.dipole) if rigid else None
@@ -169,16 +242,13 @@ def _polished(series_of: SeriesOf, volume_of, series: Series, winner: Contender,
     if constants.values.size == 0:
         return smoothed, constants
     rows = middle_rows(series)
+    job = _Polish(series_of=series_of, volume_of=volume_of, rows=rows, floor=floor)
     start = np.concatenate([smoothed.q_bi[rows.start], smoothed.omega_b[rows.start]])
-    noise, like = smoothed.noise, smoothed.model
-    for _ in range(POLISH_ROUNDS):
-        constants, gained = polish(
-            constants, lambda v: part(series_of(v), rows), lambda v: volume_of(v, rows), start, noise, like
-        )
-        arc = part(series_of(constants.values[: constants.calibrated]), rows)
-        noise, like, _ = tune(arc, start, noise, constants.model(like), min(floor, magnitude_noise(arc)))
-        start = smooth(arc, start, noise, like).start
-        if gained < 2.0:
-            break
-    first = smoothed.start if rows.start else start
-    return replace(smoothed, noise=noise, model=like, q_bi=first[None, :4], omega_b=first[None, 4:]), constants
+    tops = [job.climb(constants, start, smoothed.noise, smoothed.model, None)]
+    if unsure:
+        plain = smoothed.noise._replace(white=floor, coloured=0.5 * floor, coloured_time=SLOW_ERROR_TIME)
+        tops += [job.climb(constants, start, plain, smoothed.model, quiet) for quiet in QUIET_NOISES]
+    best = max(tops, key=lambda top: top.score if np.isfinite(top.score) else -np.inf)
+    first = smoothed.start if rows.start else best.start
+    result = replace(smoothed, noise=best.noise, model=best.like, q_bi=first[None, :4], omega_b=first[None, 4:])
+    return result, best.constants

@@ -42,15 +42,19 @@ def best_rate_noise(series: Series, start: np.ndarray, noise: Noise, model: Rate
     return max(trials, key=lambda trial: _finite(log_likelihood(series, start, noise, trial)))
 
 
-def tune(series: Series, start: np.ndarray, noise: Noise, model: RateModel, floor: float) -> tuple[Noise, RateModel, float]:
+def tune(
+    series: Series, start: np.ndarray, noise: Noise, model: RateModel, floor: float, *, hold_rate: bool = False
+) -> tuple[Noise, RateModel, float]:
     """Noise and model with the greatest likelihood, under (1); returns the log-likelihood too.
 
-    start (7,) holds at the first row of the series; floor [T] is `magnitude_noise`.
+    start (7,) holds at the first row of the series; floor [T] is `magnitude_noise`. hold_rate leaves the rate's noise alone.
     """
     from scipy.optimize import minimize
 
     def decode(x):
-        white, coloured, time, rate = np.exp(np.clip(x, *_bounds(floor)))
+        low, high = _bounds(floor)
+        white, coloured, time = np.exp(np.clip(x[:3], low[:3], high[:3]))
+        rate = model.noise if hold_rate else np.exp(np.clip(x[3], low[3], high[3]))
         return noise._replace(white=white, coloured=coloured, coloured_time=time), model._replace(noise=rate)
 
     def cost(x):
@@ -59,12 +63,12 @@ def tune(series: Series, start: np.ndarray, noise: Noise, model: RateModel, floo
         size = np.log(np.hypot(trial.white, trial.coloured) / floor)
         off = max(-size, 0.0) + max(size - LARGEST_EXCESS, 0.0)
         low, high = _bounds(floor)
-        outside = np.sum((x - np.clip(x, low, high)) ** 2)
+        outside = np.sum((x - np.clip(x, low[: x.size], high[: x.size])) ** 2)
         # a floor that is missed by a tenth costs as much as the likelihood can gain over a few hundred samples
         return total + 1e4 * off**2 + 1e3 * outside
 
-    x = np.log([noise.white, max(noise.coloured, 0.1 * floor), noise.coloured_time, model.noise])
-    simplex = x + np.vstack([np.zeros(4), np.diag([0.5, 0.7, 1.0, 1.2])])
+    x = np.log([noise.white, max(noise.coloured, 0.1 * floor), noise.coloured_time, model.noise])[: 3 if hold_rate else 4]
+    simplex = x + np.vstack([np.zeros(x.size), np.diag([0.5, 0.7, 1.0, 1.2][: x.size])])
     options = {"xatol": 0.03, "fatol": 0.3, "maxfev": 220, "initial_simplex": simplex}
     found = minimize(cost, x, method="Nelder-Mead", options=options)
     tuned, rate = decode(found.x)

@@ -108,9 +108,7 @@ class Calibration:
             out[piece] = corrected(self.terms, self.values, part)[0]
         return out
 
-    def gain_at(
-        self, seconds, *, temperature_k=None, dipole_command_b=None, solar_current=None, epoch_utc=None
-    ) -> np.ndarray:
+    def gain_at(self, seconds, *, temperature_k=None, dipole_command_b=None, solar_current=None, epoch_utc=None) -> np.ndarray:
         """(n,) the whole gain, slow and by temperature, at samples; arguments as of `apply`."""
         readings = np.zeros((len(np.atleast_1d(seconds)), 3))
         samples = self._samples(seconds, readings, temperature_k, dipole_command_b, solar_current, epoch_utc)
