@@ -110,7 +110,8 @@ def polish(
 ) -> tuple[Constants, float]:
     """Constants that maximise (1), with their covariance, and the gain of (1).
 
-    series_of(calibration numbers) gives the arc calibrated with them, volume_of the V of (3); start (7,) is the state at its first row.
+    series_of(calibration numbers) gives the arc calibrated with them, volume_of the V of (3); start (7,) is the state at
+    its first row.
     """
     if constants.values.size == 0:
         return constants, 0.0

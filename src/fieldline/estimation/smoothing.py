@@ -93,11 +93,16 @@ def state_at_first(series: Series, row: int, state: np.ndarray, noise: Noise, mo
 
 
 def smooth(series: Series, start: np.ndarray, noise: Noise, model: RateModel, passes: int = 1, progress=None) -> Smoothed:
-    """Filter and smooth an arc from a start (7,) at its first sample, `passes` times over."""
+    """Filter and smooth an arc from a start (7,) at its first sample, `passes` times over; the likeliest pass counts."""
+    best = None
     for turn in range(passes):
         result = _smooth_once(series, start, noise, model, progress if turn == passes - 1 else None)
         start = result.start
-    return result
+        if best is None or result.log_likelihood > best.log_likelihood:
+            best = result
+        if not np.isfinite(start).all():
+            break
+    return best
 
 
 def _smooth_once(series: Series, start: np.ndarray, noise: Noise, model: RateModel, progress) -> Smoothed:

@@ -30,6 +30,7 @@ from fieldline.estimation.tuning import LONGEST, magnitude_noise, middle_rows, t
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
 POLISH_ROUNDS = 4
 QUIET_ROUNDS = 6
+UNSURE_STRETCH = 2.0
 QUIET_NOISES = (1e-6, 1e-7)  # [rad/s/sqrt(s)]
 BODY_COUNT = 8  # numbers that a free rigid body has and a random walk has not: half of ln n each in its favour
 
@@ -74,11 +75,12 @@ def solve(
     noise = Noise(white=floor, coloured=0.5 * floor, coloured_time=SLOW_ERROR_TIME)
     contenders, tried, remarks = _contenders(series, noise, floor, inertia, progress)
     settled = _settled(series, contenders, floor)
-    winner = settled[0]
-    progress("refine", 0.4, 1.0, winner.candidate.words)
-    smoothed, constants = _polished(
-        series_of, volume_of, series, winner, calibration_values, calibration_covariance, floor, unsure
-    )
+    progress("refine", 0.4, 1.0, settled[0].candidate.words)
+    job = _Polish(series_of=series_of, volume_of=volume_of, rows=middle_rows(series), floor=floor)
+    # a calibration that is unsure judges the rate models only once it has been found with each of them
+    rivals = settled if unsure else settled[:1]
+    polished = [_polished(job, series, rival, calibration_values, calibration_covariance, unsure) for rival in rivals]
+    winner, smoothed, constants, _ = max(polished, key=lambda one: one[3])
     series = series_of(_calibration_part(constants, calibration_values))
     progress("refine", 0.7, 1.0, "uncertainty")
     smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=2)
@@ -229,8 +231,8 @@ class _Climbed(NamedTuple):
     score: float
 
 
-def _polished(series_of: SeriesOf, volume_of, series: Series, winner: Contender, values, covariance, floor: float, unsure: bool):
-    """The winner with its constants and noise at the top of the posterior.
+def _polished(job: _Polish, series: Series, winner: Contender, values, covariance, unsure: bool):
+    """A contender with its constants and noise at the top of the posterior: itself, motion, constants, score.
 
     Where the calibration is unsure, the tops are several: a rate that wanders freely agrees with any calibration. The climb
     is then repeated from rates held quiet, and the highest top counts.
@@ -240,15 +242,20 @@ def _polished(series_of: SeriesOf, volume_of, series: Series, winner: Contender,
     dipole = (np.zeros(3) if motion.dipole is None else motion.dipole) if rigid else None
     constants = gather_constants(values, covariance, motion.shape if rigid else None, dipole, motion.inertia)
     if constants.values.size == 0:
-        return smoothed, constants
-    rows = middle_rows(series)
-    job = _Polish(series_of=series_of, volume_of=volume_of, rows=rows, floor=floor)
-    start = np.concatenate([smoothed.q_bi[rows.start], smoothed.omega_b[rows.start]])
+        return winner, smoothed, constants, winner.log_likelihood
+    first_row = job.rows.start
+    start = np.concatenate([smoothed.q_bi[first_row], smoothed.omega_b[first_row]])
     tops = [job.climb(constants, start, smoothed.noise, smoothed.model, None)]
     if unsure:
-        plain = smoothed.noise._replace(white=floor, coloured=0.5 * floor, coloured_time=SLOW_ERROR_TIME)
+        plain = smoothed.noise._replace(white=job.floor, coloured=0.5 * job.floor, coloured_time=SLOW_ERROR_TIME)
         tops += [job.climb(constants, start, plain, smoothed.model, quiet) for quiet in QUIET_NOISES]
     best = max(tops, key=lambda top: top.score if np.isfinite(top.score) else -np.inf)
-    first = smoothed.start if rows.start else best.start
+    first = smoothed.start if first_row else best.start
+    found = best.constants
+    if unsure:
+        # on simulated Earth-pointing flights the errors of matrix and bias were about twice what the curvature of the
+        # posterior says: slow error and calibration share the same few turns of the field
+        found = replace(found, covariance=UNSURE_STRETCH**2 * found.covariance)
     result = replace(smoothed, noise=best.noise, model=best.like, q_bi=first[None, :4], omega_b=first[None, 4:])
-    return result, best.constants
+    free = BODY_COUNT if constants.shape else 0
+    return winner, result, found, best.score - 0.5 * free * np.log(max(series.used.sum(), 2))
