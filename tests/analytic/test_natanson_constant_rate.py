@@ -53,10 +53,12 @@ def test_parallel_derivative_has_no_circle_and_says_so():
     assert "digitised too coarsely" in roots.words()[0]
 
 
-def test_vanishing_second_derivatives_leave_every_angle_open_and_it_says_so():
-    """A body at rest in a field that changes at a steady rate: any angle on the circle satisfies (3-7b)."""
-    steady = Derivatives(np.array([[0.0, 0.0, 4e-5]]), np.array([[0.0, 8e-8, 0.0]]), np.zeros((1, 3)))
-    roots = constant_rate_roots(body_of(Rotation.identity(1), [0.0, 0.0, 0.0], steady), steady)
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
+@pytest.mark.parametrize("second", [(0.0, 0.0, 0.0), (2e-10, 2e-10, 0.0)])
+def test_second_derivatives_that_vanish_across_the_field_leave_every_angle_open_and_it_says_so(turn, second):
+    """A body at rest in a field whose rate is steady, or grows along it: any angle on the circle satisfies (3-7b)."""
+    steady = Derivatives(np.array([[4e-5, 4e-5, 0.0]]), np.array([[0.0, 4e-8, 8e-8]]), np.array([second]))
+    roots = constant_rate_roots(body_of(Rotation.from_rotvec([turn]), [0.0, 0.0, 0.0], steady), steady)
     assert roots.status[0] == Status.EVERY_ANGLE
     assert np.isnan(roots.q_bi).all() and np.isnan(roots.discriminant[0])
     assert "every attitude" in roots.words()[0]

@@ -136,7 +136,9 @@ def constant_rate_roots(derivatives_b, derivatives_i, *, beyond: str = "nan") ->
     circle = uncertainty_circle(derivatives_b, derivatives_i)
     second = projections(circle, derivatives_b.second, derivatives_i.second)
     p, q, r = coefficients(circle, second)
-    size = (circle.lambda_a + circle.lambda_r) * np.sum(np.abs(second[:4]), axis=0) + np.abs(second.s3)
+    # of the whole second derivatives: where they lie along the field, what they leave across it is rounding
+    whole = np.linalg.norm(derivatives_b.second, axis=1) + np.linalg.norm(derivatives_i.second, axis=1)
+    size = (circle.lambda_a + circle.lambda_r) * whole + np.abs(second.s3)
     with np.errstate(invalid="ignore", divide="ignore"):
         told = np.hypot(q, r) > TOLD * size
         ratio = np.where(told, -p / np.where(told, np.hypot(q, r), 1.0), np.nan)
