@@ -231,7 +231,7 @@ def _halves(solution: Solution) -> tuple[np.ndarray, float] | None:
         half = smooth(part(series, rows), start, smoothed.noise, smoothed.model, passes=2)
         both.append(half)
     # what constants and field model add to the whole arc, the halves carry too
-    plain = smooth(series, smoothed.start, smoothed.noise, smoothed.model)
+    plain = smooth(series, smoothed.start, smoothed.noise, smoothed.model, about=smoothed)
     added = np.maximum(extra - plain.attitude_covariance_b, 0.0)[middle]
     first, second = both
     first.attitude_covariance_b[-1] += 0.5 * (added + added.T)

@@ -109,5 +109,8 @@ def _rigid_substep(q, w, torque, phi, psi, lam, h, model):
     slope = matscale(h, rate_jacobian(middle, model))
     grow = matadd(IDENTITY, matadd(slope, matscale(0.5, matmul(slope, slope))))
     rotated = dcm(step)
-    psi = matadd(matmul(rotated, psi), matscale(h, matmul(matadd(IDENTITY, matscale(0.5, slope)), lam)))
+    # what the rate's error adds over the substep: its value at the middle, turned on to the end
+    half = dcm(quat_exp(scale(0.5 * h, middle)))
+    gained = matscale(h, matmul(half, matmul(matadd(IDENTITY, matscale(0.5, slope)), lam)))
+    psi = matadd(matmul(rotated, psi), gained)
     return quat_mul(q, step), w_next, matmul(rotated, phi), psi, matmul(grow, lam)

@@ -16,7 +16,8 @@ from fieldline.estimation.kalman import CHUNK, STATES, Noise, filter_forward, pr
 from fieldline.estimation.motion import RateModel
 from fieldline.estimation.series import Series, part
 
-EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE = np.empty((0, STATES)), np.empty((0, cov.BLOCKS)), np.empty((0, 3))
+NO_PATH = np.empty((0, STATES))
+NOTHING = (NO_PATH, np.empty((0, 9)), np.empty((0, cov.BLOCKS)), np.empty((0, 3)))  # states, errors, blocks, white
 FIRST_ATTITUDE_STD = 1.0  # [rad] the first sample's attitude is free
 DIAGONAL = np.array([0, 4, 8])
 
@@ -46,6 +47,11 @@ class Smoothed:
         return np.concatenate([self.q_bi[0], self.omega_b[0]])
 
     @property
+    def path(self) -> np.ndarray:
+        """(n, 10) the states as one array, for linearising about them."""
+        return np.hstack([self.q_bi, self.omega_b, self.slow_b])
+
+    @property
     def nis(self) -> np.ndarray:
         """(n,) normalised innovation squared, NaN where not used; its expectation is 3."""
         return (self.white**2).sum(axis=1)
@@ -71,14 +77,14 @@ def rate_prior(start: np.ndarray) -> float:
 def log_likelihood(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> float:
     """Log-likelihood of an arc's innovations from a start (7,), the first attitude free."""
     row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
-    return filter_forward(series, True, 0.0, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
+    return filter_forward(series, True, 0.0, row, np.zeros((1, 9)), prior, noise, model, NO_PATH, *NOTHING)
 
 
 def innovations(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> tuple[np.ndarray, float]:
     """Whitened innovations (n, 3) of an arc and their log-likelihood, from a start (7,), the first attitude free."""
     row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
     white = np.empty_like(series.field_b)
-    total = filter_forward(series, True, 0.0, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, white)
+    total = filter_forward(series, True, 0.0, row, np.zeros((1, 9)), prior, noise, model, NO_PATH, *NOTHING[:3], white)
     return white, total
 
 
@@ -88,50 +94,67 @@ def state_at_first(series: Series, row: int, state: np.ndarray, noise: Noise, mo
         return state
     back = part(series, slice(row, None, -1))
     start, prior = _start_row(state), prior_blocks(0.3, rate_prior(state), noise.coloured)
-    filter_forward(back, True, 0.0, start, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
+    filter_forward(back, True, 0.0, start, np.zeros((1, 9)), prior, noise, model, NO_PATH, *NOTHING)
     return start[0, :7].copy()
 
 
-def smooth(series: Series, start: np.ndarray, noise: Noise, model: RateModel, passes: int = 1, progress=None) -> Smoothed:
-    """Filter and smooth an arc from a start (7,) at its first sample, `passes` times over; the likeliest pass counts."""
+def smooth(
+    series: Series, start: np.ndarray, noise: Noise, model: RateModel, passes: int = 1, *, about: Smoothed | None = None
+) -> Smoothed:
+    """Filter and smooth an arc from a start (7,) at its first sample, `passes` times over; the likeliest pass counts.
+
+    The first pass linearises about the filter's own state, or about the path of `about`; each next one about the path of
+    the one before.
+    """
     best = None
-    for turn in range(passes):
-        result = _smooth_once(series, start, noise, model, progress if turn == passes - 1 else None)
-        start = result.start
+    for _ in range(passes):
+        result = _smooth_once(series, start, noise, model, NO_PATH if about is None else about.path)
         if best is None or result.log_likelihood > best.log_likelihood:
             best = result
-        if not np.isfinite(start).all():
+        if not np.isfinite(result.q_bi).all():
             break
+        start, about = result.start, result
     return best
 
 
-def _smooth_once(series: Series, start: np.ndarray, noise: Noise, model: RateModel, progress) -> Smoothed:
+def _smooth_once(series: Series, start: np.ndarray, noise: Noise, model: RateModel, path: np.ndarray) -> Smoothed:
+    """One pass forward, remembering the state at the chunks' borders, and one backward, chunk by chunk."""
     n = len(series.seconds)
     borders = list(range(0, n, CHUNK))
     row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
-    saved, total = [], 0.0
-    for k, first in enumerate(borders):
-        saved.append((row.copy(), prior.copy()))
-        if k < len(borders) - 1:
-            rows = part(series, slice(first, first + CHUNK))
-            before = float(series.seconds[first - 1]) if first else 0.0
-            total += filter_forward(rows, first == 0, before, row, prior, noise, model, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
+    offset, saved, total = np.zeros((1, 9)), [], 0.0
+    for first in borders:
+        saved.append((row.copy(), offset.copy(), prior.copy()))
+        if first != borders[-1]:
+            chunk = slice(first, first + CHUNK)
+            total += filter_forward(
+                part(series, chunk), first == 0, _before(series, first), row, offset, prior, noise, model, path[chunk], *NOTHING
+            )
     out = _Outputs(n)
     adjoint_v, adjoint_m = np.zeros(9), np.zeros((1, cov.BLOCKS))
-    for k in range(len(borders) - 1, -1, -1):
-        first = borders[k]
-        rows = part(series, slice(first, first + CHUNK))
-        before = float(series.seconds[first - 1]) if first else 0.0
+    for first, (row, offset, prior) in zip(borders[::-1], saved[::-1], strict=True):
+        chunk = slice(first, first + CHUNK)
+        rows = part(series, chunk)
         count = len(rows.seconds)
-        states, blocks, white = np.empty((count, STATES)), np.empty((count, cov.BLOCKS)), np.empty((count, 3))
-        row, prior = saved[k]
-        gained = filter_forward(rows, first == 0, before, row.copy(), prior.copy(), noise, model, states, blocks, white)
-        total += gained if k == len(borders) - 1 else 0.0
-        smooth_backward(rows, first == 0, before, row, prior, noise, model, states, blocks, adjoint_v, adjoint_m)
+        states, errors = np.empty((count, STATES)), np.empty((count, 9))
+        blocks, white = np.empty((count, cov.BLOCKS)), np.empty((count, 3))
+        common = (rows, first == 0, _before(series, first))
+        gained = filter_forward(
+            *common, row.copy(), offset.copy(), prior.copy(), noise, model, path[chunk], states, errors, blocks, white
+        )
+        if not np.isfinite(gained):
+            # the filter ran away before the end: what it did not reach holds no numbers
+            total, states[:], blocks[:], white[:] = -np.inf, np.nan, np.nan, np.nan
+        else:
+            total += gained if first == borders[-1] else 0.0
+            smooth_backward(*common, row, offset, prior, noise, model, path[chunk], states, errors, blocks, adjoint_v, adjoint_m)
         out.put(slice(first, first + count), states, blocks, white)
-        if progress is not None:
-            progress(n - first, n)
     return out.result(total, noise, model)
+
+
+def _before(series: Series, first: int) -> float:
+    """[s] the sample before a row, where there is one."""
+    return float(series.seconds[first - 1]) if first else 0.0
 
 
 class _Outputs:

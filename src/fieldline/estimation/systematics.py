@@ -43,7 +43,7 @@ def widen(smoothed: Smoothed, constants: Constants, series_of: Callable[[np.ndar
         # a tenth of a sigma stays linear where a whole one, on a long arc, may turn the body round
         moved = _with(constants, constants.values + 0.1 * np.sqrt(values[j]) * vectors[:, j] * scale)
         series = series_of(moved.values[: constants.calibrated])
-        other = smooth(series, smoothed.start, smoothed.noise, moved.model(smoothed.model))
+        other = smooth(series, smoothed.start, smoothed.noise, moved.model(smoothed.model), about=smoothed)
         error = 10.0 * rotation_error_b(other.q_bi, smoothed.q_bi)
         covariance += error[:, :, None] * error[:, None, :]
         rate_var += (10.0 * (other.omega_b - smoothed.omega_b)) ** 2
@@ -59,13 +59,13 @@ def widen_by_field_model(smoothed: Smoothed, series: Series, seed: int) -> Smoot
     arc = part(series, rows)
     rng = np.random.default_rng(seed)
     start = np.concatenate([smoothed.q_bi[rows.start], smoothed.omega_b[rows.start]])
-    base = smooth(arc, start, smoothed.noise, smoothed.model)
+    base = smooth(arc, start, smoothed.noise, smoothed.model, passes=2)
     dcm_ib = np.swapaxes(dcm_from_quaternion(base.q_bi), 1, 2)
     size = max(FIELD_MODEL_STD, standing_error(base, arc))
     spread, rate_var = np.zeros((3, 3)), np.zeros(3)
     for _ in range(FIELD_DRAWS):
         error_i = size * first_order_noise(arc.seconds, FIELD_MODEL_TIME, rng)
-        other = smooth(arc._replace(field_i=arc.field_i + error_i), start, smoothed.noise, smoothed.model)
+        other = smooth(arc._replace(field_i=arc.field_i + error_i), start, smoothed.noise, smoothed.model, about=base)
         turned_i = np.einsum("nij,nj->ni", dcm_ib, rotation_error_b(other.q_bi, base.q_bi))
         spread += turned_i.T @ turned_i / (len(turned_i) * FIELD_DRAWS)
         rate_var += ((other.omega_b - base.omega_b) ** 2).mean(axis=0) / FIELD_DRAWS

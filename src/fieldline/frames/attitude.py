@@ -16,7 +16,7 @@ with their product order replaced by Hamilton's: their A(q) and ours are the sam
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import atan2, cos, sin, sqrt
 
 import numpy as np
 from numba import njit
@@ -58,6 +58,17 @@ def quat_exp(angle):
     size = sqrt(square)
     s = sin(0.5 * size) / size
     return (s * angle[0], s * angle[1], s * angle[2], cos(0.5 * size))
+
+
+@njit(cache=True)
+def rotation_vector(q):
+    """The rotation vector [rad] of a unit quaternion, the short way round: `quat_exp` undone."""
+    x, y, z, w = q
+    if w < 0.0:
+        x, y, z, w = -x, -y, -z, -w
+    size = sqrt(x * x + y * y + z * z)
+    s = 2.0 if size < 1e-12 else 2.0 * atan2(size, w) / size
+    return (s * x, s * y, s * z)
 
 
 @njit(cache=True)
@@ -112,7 +123,7 @@ def quaternion_from_dcm(dcm_bi):
 
     matrices = np.asarray(dcm_bi, dtype=float)
     q = Rotation.from_matrix(np.swapaxes(matrices, -1, -2).reshape(-1, 3, 3)).as_quat(canonical=True)
-    return q.reshape(matrices.shape[:-2] + (4,))
+    return q.reshape((*matrices.shape[:-2], 4))
 
 
 def rotation_error_b(q_true, q_estimate):
@@ -122,4 +133,4 @@ def rotation_error_b(q_true, q_estimate):
     true = np.asarray(q_true, dtype=float)
     estimate = np.asarray(q_estimate, dtype=float)
     error = Rotation.from_quat(estimate.reshape(-1, 4)).inv() * Rotation.from_quat(true.reshape(-1, 4))
-    return error.as_rotvec().reshape(np.broadcast_shapes(true.shape, estimate.shape)[:-1] + (3,))
+    return error.as_rotvec().reshape((*np.broadcast_shapes(true.shape, estimate.shape)[:-1], 3))

@@ -58,7 +58,7 @@ def scan_clock(
     for offset in offsets_s:
         samples = samples_at(float(offset)).thinned(THINNED)
         blocks = block_numbers(samples) if blocks is None else blocks
-        again = fit(one.terms, theta, samples, prior_of(one.terms, samples), rounds=2, steps=15)
+        again = fit(one.terms, theta, samples, prior_of(one.terms, samples), rounds=2, steps=15, scale=one.scale)
         losses.append(np.bincount(blocks, log_loss(again.residual, again.scale)) / np.bincount(blocks))
         near = np.abs(again.residual) < 6.0 * again.scale
         rms.append(float(np.sqrt(np.mean(again.residual[near] ** 2))) * unit_tesla)

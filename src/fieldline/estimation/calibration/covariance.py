@@ -26,8 +26,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fieldline.estimation.calibration.fit import DEGREES, Fit, Prior, normal_equations, prior_of, weights_of, with_prior
-from fieldline.estimation.calibration.model import Samples, Terms, gain_sums, linearised
+from fieldline.estimation.calibration.distance import block_kernel, information_kernel, matrix9, mirrored_half, problem_of
+from fieldline.estimation.calibration.fit import DEGREES, Fit, Prior, influence_slope, normal_equations, prior_of, weights_of, with_prior
+from fieldline.estimation.calibration.model import Samples, Terms, gain_sums
 from fieldline.estimation.calibration.twin import twin
 
 MEMORY_LEVEL = 0.1
@@ -35,7 +36,7 @@ LONGEST_SERIES = 131072
 BLOCKS_AT_LEAST = 12
 OMITTED_FACTOR = 3.0
 OMITTED_MATRIX_STD = 0.1
-FIELD_MODEL_STD_TESLA = 50e-9  # of the magnitude; Olsen & Stolle (2012), Annu. Rev. Earth Planet. Sci. 40, quiet-time sizes
+FIELD_MODEL_STD_TESLA = 50e-9  # of the magnitude; our own assumption for a quiet day, with no source behind it
 FIELD_MODEL_MEMORY_S = 600.0  # some 4000 km of ground track
 
 
@@ -74,24 +75,16 @@ def block_length(fit: Fit) -> int:
     return max(1, min(2 * memory_samples(clipped(fit)), len(fit.residual) // BLOCKS_AT_LEAST))
 
 
-def influence_slope(fit: Fit) -> float:
-    """Mean of d psi / d r over the mean weight: how much less than its weights a robust fit resists being pulled."""
-    x2 = (fit.residual / fit.scale) ** 2
-    slope = (DEGREES + 1.0) * (DEGREES - x2) / (DEGREES + x2) ** 2
-    return max(0.3, float(np.mean(slope) / np.mean(weights_of(fit.residual, fit.scale))))
-
-
 def score_spread(
     terms: Terms, theta: np.ndarray, samples: Samples, scale: float, length: int, error: float | None = None
 ) -> np.ndarray:
     """S of (1) for blocks of `length` samples: of the residuals, or of a constant `error` in their place."""
-    spread = np.zeros((terms.size, terms.size))
-    for _, part in samples.chunks():
-        d, where, jacobian = linearised(terms, theta, part)
-        scores = jacobian * (weights_of(d, scale) * (d if error is None else error) / scale**2)[:, None]
-        sums = np.add.reduceat(scores, np.arange(0, len(part), length), axis=0)
-        spread[np.ix_(where, where)] += sums.T @ sums
-    return spread
+    spread, problem, matrix = np.zeros((terms.size, terms.size)), problem_of(terms, samples), matrix9(terms, theta)
+    if length == 1 and error is None:
+        information_kernel(theta, matrix, *problem, scale, DEGREES, True, spread, np.zeros(terms.size))
+    else:
+        block_kernel(theta, matrix, *problem, scale, DEGREES, np.nan if error is None else error, length, spread)
+    return mirrored_half(spread)
 
 
 def field_model_block(samples: Samples) -> int:
@@ -134,7 +127,7 @@ def covariance_of(fit: Fit, samples: Samples, field_model_std: float) -> tuple[T
     terms, theta, prior = widened(fit, samples)
     samples = samples.lengthened(fit.scale)
     information, _ = normal_equations(terms, theta, samples, fit.scale)
-    information *= influence_slope(fit)
+    information *= influence_slope(fit.residual, fit.scale)
     length = block_length(fit)
     blocks = len(samples) / length
     spread = score_spread(terms, theta, samples, fit.scale, length) * blocks / (blocks - 1.0)

@@ -13,7 +13,7 @@ from fieldline.estimation.calibration.covariance import FIELD_MODEL_STD_TESLA, c
 from fieldline.estimation.calibration.fit import OUTLIER_SIGMAS, Fit, fit, prior_of
 from fieldline.estimation.calibration.ladder import BASIC, best_fit, flight_splines
 from fieldline.estimation.calibration.model import Samples, Terms, field_std, magnitudes
-from fieldline.estimation.calibration.record import Calibration, only_flight
+from fieldline.estimation.calibration.record import COLUMNS, Calibration, only_flight
 from fieldline.estimation.calibration.selection import Candidate, choose
 from fieldline.estimation.calibration.spline import KNOT_SPACING_S, UniformSpline
 from fieldline.estimation.calibration.words import with_sentences
@@ -27,6 +27,7 @@ EXTENSIONS = {
     "drift": {"drift": True},
     "dipole": {"dipole": True},
     "current": {"current": True},
+    "sunlit": {"sunlit": True},
 }
 
 
@@ -41,6 +42,7 @@ class Flight:
     temperature_k: np.ndarray | None = None
     dipole_command_b: np.ndarray | None = None
     solar_current: np.ndarray | None = None
+    sunlit: np.ndarray | None = None
     epoch_utc: np.datetime64 | None = None
     name: str = ""
 
@@ -56,6 +58,7 @@ class Units:
     temperature_k: float
     dipole_a_m2: float
     current_a: float
+    sunlit: float
 
 
 def calibrate_magnitude(
@@ -68,6 +71,7 @@ def calibrate_magnitude(
     temperature_k=None,
     dipole_command_b=None,
     solar_current=None,
+    sunlit=None,
     epoch_utc=None,
     knot_spacing_s: float = KNOT_SPACING_S,
     field_model_std_tesla: float = FIELD_MODEL_STD_TESLA,
@@ -84,9 +88,9 @@ def calibrate_magnitude(
     usable : (n,) bool, samples that may be used; rows that are not finite never are.
     model : "auto" (the data decide), "none", "bias", "bias+scale", "full" (nine parameters), or "full" with "+gain"
         (slow gain of the whole reading), "+field-gain" (of the field without the bias), "+temperature", "+drift",
-        "+dipole", "+current" after it.
-    temperature_k (n,) [K], dipole_command_b (n, 3) [A m^2], solar_current (n,) [A]: columns that terms may use; only
-        what is given is tried.
+        "+dipole", "+current", "+sunlit" after it.
+    temperature_k (n,) [K], dipole_command_b (n, 3) [A m^2], solar_current (n,) [A], sunlit (n,) [0..1, share of the Sun's
+        disc that is seen]: columns that terms may use; only what is given and changes is tried.
     epoch_utc : the time of seconds = 0, kept for use on other files.      knot_spacing_s : [s] of the slow gain.
     field_model_std_tesla : [T] slow error of `magnitude_tesla` itself, part of the covariance.
     clock_scan : also scan an offset of the clock over +-120 s and report it; needs `magnitude_at(offset_s)` -> (n,) [T], the
@@ -101,7 +105,7 @@ def calibrate_magnitude(
     """
     flight = Flight(
         seconds=seconds, field_s=field_s, magnitude_tesla=magnitude_tesla, usable=usable, temperature_k=temperature_k,
-        dipole_command_b=dipole_command_b, solar_current=solar_current, epoch_utc=epoch_utc,
+        dipole_command_b=dipole_command_b, solar_current=solar_current, sunlit=sunlit, epoch_utc=epoch_utc,
     )  # fmt: skip
     settings = {"knot_spacing_s": knot_spacing_s, "field_model_std_tesla": field_model_std_tesla}
     found = calibrate_flights([flight], model=model, **settings)[0]
@@ -156,7 +160,7 @@ def calibrate_flights(
 
 def climb(wanted: Terms, samples: Samples) -> Fit:
     """Fit the model that was asked for, from the nine-parameter fit upwards."""
-    base = replace(wanted, gain="none", splines=(), temperature=False, drift=False, dipole=False, current=False)
+    base = replace(wanted, gain="none", splines=(), temperature=False, drift=False, dipole=False, current=False, sunlit=False)
     first = best_fit(base, samples)
     return first if base == wanted else best_fit(wanted, samples, first)
 
@@ -172,9 +176,9 @@ def terms_named(model: str, samples: Samples, splines: tuple[UniformSpline, ...]
         if word not in EXTENSIONS:
             raise InputError(f'unknown term "+{word}" in calibration model "{model}"; {nearest(word, EXTENSIONS)}')
         terms = replace(terms, **EXTENSIONS[word])
-    for name, column in (("temperature", samples.temperature), ("dipole", samples.dipole), ("current", samples.current)):
-        if getattr(terms, name) and column is None:
-            raise InputError(f'model "{model}" needs the column "{name}" of every flight; it was not given.')
+    for name in COLUMNS:
+        if getattr(terms, name) and getattr(samples, name) is None:
+            raise InputError(f'model "{model}" needs the column "{name}" of every flight; it was not given or never changes.')
     if terms.gain != "none" and not splines:
         raise NoEstimateError(f'model "{model}": an arc of {np.ptp(samples.seconds):.0f} s is too short for a slow gain.')
     if terms.drift and flights > 1:
@@ -205,11 +209,12 @@ def gather(flights: list[Flight] | tuple[Flight, ...]) -> tuple[Samples, Units]:
     temperature, temperature_mean, temperature_size = column("temperature", centred=True)
     dipole, _, dipole_size = column("dipole")
     current, _, current_size = column("current")
+    sunlit, _, sunlit_size = column("sunlit")
     samples = Samples(
         seconds, join("field_s") / unit, join("magnitude") / unit, join("flight"), (seconds - middle) / arc_s,
-        temperature, dipole, current,
+        temperature, dipole, current, sunlit,
     )  # fmt: skip
-    return samples, Units(unit, arc_s, middle, temperature_mean, temperature_size, dipole_size, current_size)
+    return samples, Units(unit, arc_s, middle, temperature_mean, temperature_size, dipole_size, current_size, sunlit_size)
 
 
 def _checked(flight: Flight, number: int) -> Samples:
@@ -226,9 +231,8 @@ def _checked(flight: Flight, number: int) -> Samples:
     good = np.isfinite(seconds) & np.isfinite(field_s).all(axis=1) & np.isfinite(magnitude) & (magnitude > 0.0)
     good &= True if flight.usable is None else np.asarray(flight.usable, dtype=bool)
     extras = {}
-    shapes = {"temperature": ("temperature_k", (n,)), "dipole": ("dipole_command_b", (n, 3)), "current": ("solar_current", (n,))}
-    for name, (argument, shape) in shapes.items():
-        value = getattr(flight, argument)
+    for name, (argument, _) in COLUMNS.items():
+        value, shape = getattr(flight, argument), (n, 3) if name == "dipole" else (n,)
         extras[name] = None if value is None else np.asarray(value, dtype=float)
         if value is not None:
             if extras[name].shape != shape:
@@ -264,7 +268,7 @@ def physical_units(terms: Terms, units: Units) -> np.ndarray:
     sizes = {
         "bias": units.field_tesla, "matrix": 1.0, "temperature": 1.0 / units.temperature_k,
         "drift": units.field_tesla / units.arc_s, "dipole": units.field_tesla / units.dipole_a_m2,
-        "current": units.field_tesla / units.current_a, "gain": 1.0,
+        "current": units.field_tesla / units.current_a, "sunlit": units.field_tesla / units.sunlit, "gain": 1.0,
     }  # fmt: skip
     out = np.ones(terms.size)
     for name, place in terms.layout.items():

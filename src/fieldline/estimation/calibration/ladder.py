@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fieldline.estimation.calibration.fit import Fit, Prior, fit, prior_of
+from fieldline.estimation.calibration.fit import NEARLY_SETTLED, Fit, fit, prior_of
 from fieldline.estimation.calibration.model import SYMMETRIC, Samples, Terms
 from fieldline.estimation.calibration.spline import SHORTEST_GAIN_ARC_S, UniformSpline, spline_over
 from fieldline.estimation.calibration.start import centred_bias, centred_matrix
 
+ENOUGH = 1500  # samples that tell one start from another
 BASIC = {
     "none": Terms("none"),
     "bias": Terms("bias", bias=True),
@@ -41,6 +42,8 @@ def extensions(terms: Terms, samples: Samples, splines: tuple[UniformSpline, ...
         out.append(replace(terms, name=f"{terms.name}+dipole", dipole=True))
     if samples.current is not None and not terms.current:
         out.append(replace(terms, name=f"{terms.name}+current", current=True))
+    if samples.sunlit is not None and not terms.sunlit:
+        out.append(replace(terms, name=f"{terms.name}+sunlit", sunlit=True))
     return out
 
 
@@ -60,12 +63,14 @@ def embed(fit_: Fit, terms: Terms) -> np.ndarray:
 def best_fit(terms: Terms, samples: Samples, simpler: Fit | None = None) -> Fit:
     """The lowest cost among the fits from the simpler candidate and from the centred starts."""
     prior = prior_of(terms, samples)
+    few = samples.thinned(ENOUGH)
     starts = [embed(simpler, terms)] if simpler is not None else []
     if terms.size <= 9:
-        starts += _centred_starts(terms, samples)
-    fits = [fit(terms, start, samples, prior) for start in starts] or [_unfitted(terms, samples, prior)]
+        starts += _centred_starts(terms, few)
+    rough = [fit(terms, start, few, prior, settled=NEARLY_SETTLED) for start in starts or [prior.mean.copy()]]
     # Costs at unlike scales do not compare; the scale itself does.
-    return min(fits, key=lambda one: one.cost + len(samples) * np.log(one.scale))
+    best = min(rough, key=lambda one: one.cost + len(few) * np.log(one.scale))
+    return fit(terms, best.theta, samples, prior, scale=best.scale, settled=NEARLY_SETTLED)
 
 
 def _centred_starts(terms: Terms, samples: Samples) -> list[np.ndarray]:
@@ -82,8 +87,3 @@ def _centred_starts(terms: Terms, samples: Samples) -> list[np.ndarray]:
                 theta[terms.layout["matrix"]] = six if terms.matrix == "full" else six[:1]
             out.append(theta)
     return out
-
-
-def _unfitted(terms: Terms, samples: Samples, prior: Prior) -> Fit:
-    """The fit from the prior's own centre."""
-    return fit(terms, prior.mean.copy(), samples, prior)

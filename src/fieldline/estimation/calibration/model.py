@@ -1,6 +1,6 @@
 """How a magnetometer's reading becomes a field whose magnitude can be compared with a model's.
 
-    w       = gain_s(t) field_s - bias - drift (t - t_r) - C dipole - c current                    (1)
+    w       = gain_s(t) field_s - bias - drift (t - t_r) - C dipole - c current - p sunlit         (1)
     field_b = gain_b(t) D w                                                                        (2)
     r       = |field_b| - |B_ref| (1 + s^2 / |B_ref|^2)                                            (3)
     d       = r / |D u|,   u = field_b / |field_b|                                                 (4)
@@ -58,6 +58,7 @@ class Samples:
     temperature: Any = None  # (n,) or None
     dipole: Any = None  # (n, 3) or None
     current: Any = None  # (n,) or None
+    sunlit: Any = None  # (n,) or None
 
     def __len__(self) -> int:
         return len(self.seconds)
@@ -67,7 +68,7 @@ class Samples:
         pick = lambda values: None if values is None else values[which]
         return Samples(
             self.seconds[which], self.field_s[which], self.magnitude[which], self.flight[which], self.arc[which],
-            pick(self.temperature), pick(self.dipole), pick(self.current),
+            pick(self.temperature), pick(self.dipole), pick(self.current), pick(self.sunlit),
         )  # fmt: skip
 
     def lengthened(self, noise: float) -> Samples:
@@ -103,6 +104,7 @@ class Terms:
     drift: bool = False
     dipole: bool = False
     current: bool = False
+    sunlit: bool = False
     splines: tuple[UniformSpline, ...] = field(default=())
 
     @cached_property
@@ -115,6 +117,7 @@ class Terms:
             "drift": 3 * self.drift,
             "dipole": 9 * self.dipole,
             "current": 3 * self.current,
+            "sunlit": 3 * self.sunlit,
             "gain": sum(spline.size for spline in self.splines) if self.gain != "none" else 0,
         }
         places, start = {}, 0
@@ -132,7 +135,7 @@ class Terms:
     @property
     def slow(self) -> bool:
         """Whether a term changes with time as slowly as an orbit does."""
-        return self.gain != "none" or self.temperature or self.drift
+        return self.gain != "none" or self.temperature or self.drift or self.sunlit
 
     def gain_slice(self, flight: int) -> slice:
         """Place of one flight's spline coefficients."""
@@ -181,6 +184,8 @@ def corrected(terms: Terms, theta: np.ndarray, samples: Samples) -> tuple[np.nda
         w -= samples.dipole @ theta[terms.layout["dipole"]].reshape(3, 3).T
     if terms.current:
         w -= samples.current[:, None] * theta[terms.layout["current"]]
+    if terms.sunlit:
+        w -= samples.sunlit[:, None] * theta[terms.layout["sunlit"]]
     field_b = w @ terms.matrix_of(theta)  # D is symmetric
     return (gain[:, None] * field_b if on_field else field_b), w, gain
 
@@ -191,57 +196,6 @@ def magnitudes(terms: Terms, theta: np.ndarray, samples: Samples) -> np.ndarray:
     for piece, part in samples.chunks():
         out[piece] = np.linalg.norm(corrected(terms, theta, part)[0], axis=1)
     return out
-
-
-def distances(terms: Terms, theta: np.ndarray, samples: Samples) -> np.ndarray:
-    """(n,) equation (4) over all samples, flight after flight."""
-    out = np.empty(len(samples))
-    for piece, part in samples.chunks():
-        field_b, _, _ = corrected(terms, theta, part)
-        length = np.sqrt(np.einsum("ij,ij->i", field_b, field_b))
-        stretched = (field_b / np.maximum(length, TINY)[:, None]) @ terms.matrix_of(theta)
-        out[piece] = (length - part.magnitude) / np.sqrt(np.einsum("ij,ij->i", stretched, stretched))
-    return out
-
-
-def linearised(terms: Terms, theta: np.ndarray, part: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Distances (n,), the parameters they depend on (m,), and the derivatives (6) (n, m); samples of one flight."""
-    field_b, w, gain = corrected(terms, theta, part)
-    matrix = terms.matrix_of(theta)
-    length = np.maximum(np.sqrt(np.einsum("ij,ij->i", field_b, field_b)), TINY)[:, None]
-    u = field_b / length
-    v = u @ matrix
-    stretch = np.sqrt(np.einsum("ij,ij->i", v, v))[:, None]
-    distance = (length - part.magnitude[:, None]) / stretch
-    turning = v @ matrix / (stretch * length)  # d stretch / d field_b, before its part along u is taken out
-    turning -= np.einsum("ij,ij->i", turning, u)[:, None] * u
-    along = (u - distance * turning) / stretch
-    outer_gain = gain[:, None] if terms.gain == "field" else 1.0
-    to_w = outer_gain * (along @ matrix)
-    columns: list[np.ndarray] = []
-    if terms.bias:
-        columns.append(-to_w)
-    if terms.matrix != "none":
-        pairs = np.einsum("ni,nj->nij", along, outer_gain * w) - np.einsum("ni,nj->nij", distance * v / stretch**2, u)
-        pairs = np.stack([pairs[:, i, j] + (i != j) * pairs[:, j, i] for i, j in SYMMETRIC], axis=1)
-        columns.append(pairs if terms.matrix == "full" else pairs[:, :3].sum(axis=1, keepdims=True))
-    along_reading = np.einsum("ij,ij->i", along @ matrix, w if terms.gain == "field" else part.field_s)
-    if terms.temperature:
-        columns.append((along_reading * part.temperature)[:, None])
-    if terms.drift:
-        columns.append(-to_w * part.arc[:, None])
-    if terms.dipole:
-        columns.append(-(to_w[:, :, None] * part.dipole[:, None, :]).reshape(len(part), 9))
-    if terms.current:
-        columns.append(-to_w * part.current[:, None])
-    where = np.arange(sum(c.shape[1] for c in columns))
-    if "gain" in terms.layout:
-        flight = int(part.flight[0])
-        local, basis = terms.splines[flight].columns(part.seconds)
-        columns.append(along_reading[:, None] * basis)
-        start = terms.gain_slice(flight).start
-        where = np.concatenate([where, np.arange(start + local.start, start + local.stop)])
-    return distance[:, 0], where, np.concatenate(columns, axis=1) if columns else np.empty((len(part), 0))
 
 
 def gain_sums(terms: Terms, samples: Samples) -> np.ndarray:
@@ -277,6 +231,8 @@ def field_jacobian(terms: Terms, theta: np.ndarray, part: Samples) -> tuple[np.n
         columns.append(-(to_w[:, :, :, None] * part.dipole[:, None, None, :]).reshape(n, 3, 9))
     if terms.current:
         columns.append(-to_w * part.current[:, None, None])
+    if terms.sunlit:
+        columns.append(-to_w * part.sunlit[:, None, None])
     where = np.arange(sum(c.shape[2] for c in columns))
     if "gain" in terms.layout:
         flight = int(part.flight[0])

@@ -15,6 +15,7 @@ COLUMNS = {
     "temperature": ("temperature_k", "temperature"),
     "dipole": ("dipole_command_b", "dipole command"),
     "current": ("solar_current", "solar current"),
+    "sunlit": ("sunlit", "share of sunlight"),
 }
 
 
@@ -22,7 +23,8 @@ COLUMNS = {
 class Calibration:
     """A magnetometer's calibration.
 
-        field_b = gain_b(t) D (gain_s(t) field_s - bias - drift (t - t_r) - C dipole - c current)
+        field_b = gain_b(t) D (gain_s(t) field_s - bias - drift (t - t_r) - C dipole - c current
+                               - p sunlit)
 
     `values` and `covariance` belong to `parameter_names` (SI). They hold bias and matrix also where the model did not fit
     them: then the value is that of an ideal sensor and the covariance says how far from ideal this one may be.
@@ -89,7 +91,7 @@ class Calibration:
         return 1.0 + self.terms.splines[0].values(seconds, self.values[self.terms.layout["gain"]])
 
     def apply(
-        self, seconds, field_s, *, temperature_k=None, dipole_command_b=None, solar_current=None, epoch_utc=None
+        self, seconds, field_s, *, temperature_k=None, dipole_command_b=None, solar_current=None, sunlit=None, epoch_utc=None
     ) -> np.ndarray:
         """(n, 3) T: the calibrated field in body (magnetometer) axes; NaN where the reading is.
 
@@ -97,32 +99,34 @@ class Calibration:
         ----------
         seconds : (n,) [s] since `epoch_utc`, which is the calibration's own epoch unless given.
         field_s : (n, 3) [T] raw reading.
-        temperature_k, dipole_command_b, solar_current : (n,) [K], (n, 3) [A m^2], (n,) [A]: needed by the models that use
-            them.
+        temperature_k, dipole_command_b, solar_current, sunlit : (n,) [K], (n, 3) [A m^2], (n,) [A], (n,) [0..1]: needed by
+            the models that use them.
 
         Errors: InputError for shapes that do not fit and for a column that the model needs and that is missing.
         """
-        samples = self._samples(seconds, field_s, temperature_k, dipole_command_b, solar_current, epoch_utc)
+        samples = self._samples(seconds, field_s, temperature_k, dipole_command_b, solar_current, sunlit, epoch_utc)
         out = np.empty((len(samples), 3))
         for piece, part in samples.chunks():
             out[piece] = corrected(self.terms, self.values, part)[0]
         return out
 
-    def gain_at(self, seconds, *, temperature_k=None, dipole_command_b=None, solar_current=None, epoch_utc=None) -> np.ndarray:
+    def gain_at(
+        self, seconds, *, temperature_k=None, dipole_command_b=None, solar_current=None, sunlit=None, epoch_utc=None
+    ) -> np.ndarray:
         """(n,) the whole gain, slow and by temperature, at samples; arguments as of `apply`."""
         readings = np.zeros((len(np.atleast_1d(seconds)), 3))
-        samples = self._samples(seconds, readings, temperature_k, dipole_command_b, solar_current, epoch_utc)
+        samples = self._samples(seconds, readings, temperature_k, dipole_command_b, solar_current, sunlit, epoch_utc)
         return gain_of(self.terms, self.values, samples)
 
     def propagated_std(
-        self, seconds, field_s, *, temperature_k=None, dipole_command_b=None, solar_current=None, epoch_utc=None
+        self, seconds, field_s, *, temperature_k=None, dipole_command_b=None, solar_current=None, sunlit=None, epoch_utc=None
     ) -> np.ndarray:
         """(n, 3) T: 1-sigma error of `apply` along each axis that the parameters' covariance causes.
 
         It is constant or slow, not noise: averaging over samples does not lessen it. Where the gain was never fitted
         (far from the arc) its own scatter over the arc is added.
         """
-        samples = self._samples(seconds, field_s, temperature_k, dipole_command_b, solar_current, epoch_utc)
+        samples = self._samples(seconds, field_s, temperature_k, dipole_command_b, solar_current, sunlit, epoch_utc)
         out = field_std(self.terms, self.values, self.covariance, samples)
         if self.terms.gain != "none":
             spline = self.terms.splines[0]
@@ -131,7 +135,7 @@ class Calibration:
             out[far] = np.hypot(out[far], scatter * np.abs(samples.field_s[far] @ self.matrix))
         return out
 
-    def _samples(self, seconds, field_s, temperature_k, dipole_command_b, solar_current, epoch_utc) -> Samples:
+    def _samples(self, seconds, field_s, temperature_k, dipole_command_b, solar_current, sunlit, epoch_utc) -> Samples:
         """The arguments, checked, in SI."""
         seconds = np.atleast_1d(np.asarray(seconds, dtype=float))
         field_s = np.asarray(field_s, dtype=float)
@@ -140,7 +144,7 @@ class Calibration:
             raise InputError(f"field_s must be ({n}, 3) [T], one row per time; got {field_s.shape}.")
         if epoch_utc is not None and self.epoch_utc is not None:
             seconds = seconds + (np.datetime64(epoch_utc, "ns") - self.epoch_utc) / np.timedelta64(1, "s")
-        given = {"temperature": temperature_k, "dipole": dipole_command_b, "current": solar_current}
+        given = {"temperature": temperature_k, "dipole": dipole_command_b, "current": solar_current, "sunlit": sunlit}
         columns = {}
         for name, value in given.items():
             columns[name] = None
@@ -230,6 +234,7 @@ def parameter_names(terms: Terms) -> tuple[str, ...]:
         "drift": [f"drift_{a}_tesla_s" for a in "xyz"],
         "dipole": [f"dipole_{a}{b}_tesla_a_m2" for a in "xyz" for b in "xyz"],
         "current": [f"current_{a}_tesla_a" for a in "xyz"],
+        "sunlit": [f"sunlit_{a}_tesla" for a in "xyz"],
         "gain": [f"gain_{k}" for k in range(terms.splines[0].size)] if len(terms.splines) == 1 else [],
     }
     return tuple(name for term in terms.layout for name in names[term])

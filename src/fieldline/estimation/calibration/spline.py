@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 KNOT_SPACING_S = 900.0  # a sixth of a low orbit: follows eclipse heating, not the spin
 SHORTEST_GAIN_ARC_S = 1800.0  # below two intervals a spline and a bias cannot be told apart
@@ -39,21 +40,10 @@ class UniformSpline:
 
         Within one interval outside the knots the end value stands; farther off nothing is known, and the weights are zero.
         """
-        place = (np.asarray(seconds, dtype=float) - self.start_s) / self.spacing_s
-        known = (place >= -1.0) & (place <= self.intervals + 1.0)
-        place = np.clip(place, 0.0, self.intervals)
-        first = np.minimum(place.astype(np.intp), self.intervals - 1)
-        x = place - first
-        y = 1.0 - x
-        return first, known[..., None] * np.stack(
-            [
-                y**3 / 6.0,
-                (3.0 * x**3 - 6.0 * x**2 + 4.0) / 6.0,
-                (3.0 * y**3 - 6.0 * y**2 + 4.0) / 6.0,
-                x**3 / 6.0,
-            ],
-            axis=-1,
-        )
+        places = (np.asarray(seconds, dtype=float) - self.start_s) / self.spacing_s
+        first, weights = np.empty(places.shape, dtype=np.intp), np.empty((*places.shape, 4))
+        weights_kernel(places.ravel(), self.intervals, first.reshape(-1), weights.reshape(-1, 4))
+        return first, weights
 
     def values(self, seconds: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
         """(n,) value of the spline."""
@@ -67,6 +57,31 @@ class UniformSpline:
         basis = np.zeros((len(first), high - low))
         basis[np.arange(len(first))[:, None], first[:, None] - low + np.arange(4)] = weights
         return slice(low, high), basis
+
+
+@njit(cache=True)
+def basis_at(place, intervals):
+    """First coefficient and the four weights at `place`, counted in intervals from the first knot."""
+    known = 1.0 if -1.0 <= place <= intervals + 1.0 else 0.0
+    place = min(max(place, 0.0), float(intervals))
+    first = min(int(place), intervals - 1)
+    x = place - first
+    y = 1.0 - x
+    return first, (
+        known * y**3 / 6.0,
+        known * (3.0 * x**3 - 6.0 * x**2 + 4.0) / 6.0,
+        known * (3.0 * y**3 - 6.0 * y**2 + 4.0) / 6.0,
+        known * x**3 / 6.0,
+    )
+
+
+@njit(cache=True)
+def weights_kernel(places, intervals, first, weights):
+    """`basis_at` of every place."""
+    for k in range(len(places)):
+        first[k], four = basis_at(places[k], intervals)
+        for j in range(4):
+            weights[k, j] = four[j]
 
 
 def spline_over(first_s: float, last_s: float, spacing_s: float = KNOT_SPACING_S) -> UniformSpline:

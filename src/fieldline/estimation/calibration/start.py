@@ -53,7 +53,8 @@ def _trimmed(left: np.ndarray, right: np.ndarray) -> np.ndarray | None:
             return solution
         a, b = left - left[keep].mean(axis=0), right - right[keep].mean()
         size = np.maximum(np.abs(a[keep]).max(axis=0), 1e-30)
-        solution, _, rank, _ = np.linalg.lstsq(a[keep] / size, b[keep], rcond=1e-10)
+        triangle = np.linalg.qr(np.column_stack([a[keep] / size, b[keep]]), mode="r")[: len(size)]
+        solution, _, rank, _ = np.linalg.lstsq(triangle[:, :-1], triangle[:, -1], rcond=1e-10)
         if rank < left.shape[1]:
             return None
         solution = solution / size

@@ -17,8 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.estimation.calibration.fit import Fit, cost_of, fit, prior_of
-from fieldline.estimation.calibration.model import Samples, distances
+from fieldline.estimation.calibration.distance import distances
+from fieldline.estimation.calibration.fit import NEARLY_SETTLED, Fit, cost_of, fit, prior_of
+from fieldline.estimation.calibration.model import Samples
 
 ENOUGH = 3000
 
@@ -40,7 +41,7 @@ def twin(one: Fit, samples: Samples, worth: float) -> tuple[np.ndarray, float]:
         return np.zeros_like(one.theta), 0.0
     few = samples.thinned(ENOUGH)
     prior = prior_of(one.terms, few)
-    other = fit(one.terms, mirrored(one, few), few, prior, rounds=2, steps=30)
+    other = fit(one.terms, mirrored(one, few), few, prior, rounds=2, steps=30, settled=NEARLY_SETTLED)
     expected = few.lengthened(one.scale)
     costs = [cost_of(prior, theta, distances(one.terms, theta, expected), one.scale) for theta in (one.theta, other.theta)]
     more = (costs[1] - costs[0]) * len(samples) / len(few) / worth
