@@ -1,18 +1,14 @@
-"""Cost of the magnetic field per point, against ppigrf and chaosmagpy, all in this run.
-
-    python benchmarks/field.py [POINTS]
+"""Cost of the magnetic field per point, against ppigrf and chaosmagpy, all in one run.
 
 All evaluate IGRF-14 to degree 13 at the same geocentric points of low orbit. A peer that is not installed is left out
-and the table says so (`pip install ppigrf chaosmagpy`). Each figure is the best of several repetitions on one core.
+and a remark says so. Each figure is the best of several repetitions on one core.
 """
 
 from __future__ import annotations
 
-import sys
 import timeit
 from datetime import datetime
 from importlib import resources
-from pathlib import Path
 
 import numpy as np
 from numba import njit
@@ -21,6 +17,7 @@ from fieldline.environment import field_gradient, field_model, magnetic_field
 from fieldline.environment.field import field_kernel
 from fieldline.frames.vectors import add, vec
 
+POINTS = 20_000
 EPOCH = np.datetime64("2020-01-01", "ns")  # an epoch of the model, where all calendars agree
 
 
@@ -106,25 +103,18 @@ def difference(magnitude_nt, position) -> float:
     return float(np.abs(ours - magnitude_nt).max())
 
 
-def main(points: int) -> None:
-    """Print the table."""
+def table(points: int = POINTS) -> tuple[list[tuple[str, ...]], list[str]]:
+    """Rows (what, ours, each peer's) with a header, [us] a point and in brackets times ours; and remarks."""
     ours = fieldline_rows(points)
     peers, notes = {}, []
     for name, rows_of in (("ppigrf", ppigrf_rows), ("chaosmagpy", chaosmagpy_rows)):
         try:
             peers[name], apart = rows_of(points)
-            notes.append(f"{name} differs by at most {apart:.1e} nT in magnitude")
+            notes.append(f"{name} differs by at most {apart:.0e} nT in magnitude.")
         except ImportError:
-            notes.append(f"{name} is not installed and was left out")
-    print(f"microseconds a point, IGRF-14, {points} points in bulk; in brackets: times Fieldline's")
-    print(f"{'':28}{'Fieldline':>10}" + "".join(f"{name:>22}" for name in peers))
+            notes.append(f"{name} is not installed and was left out.")
+    rows = [("microseconds a point", "Fieldline", *peers)]
     for what, mine in ours.items():
-        cells = (f"{rows[what]:.3g} ({rows[what] / mine:.0f} x)" if what in rows else "-" for rows in peers.values())
-        print(f"{what:28}{mine:>10.3g}" + "".join(f"{cell:>22}" for cell in cells))
-    print(*notes, sep="\n")
-
-
-if __name__ == "__main__":
-    if len(sys.argv) > 2 or (len(sys.argv) == 2 and not sys.argv[1].isdigit()):
-        sys.exit(f"usage: python {Path(__file__).name} [POINTS]")
-    main(int(sys.argv[1]) if len(sys.argv) == 2 else 20000)
+        cells = (f"{rows_of[what]:.3g} ({rows_of[what] / mine:.0f} x)" if what in rows_of else "-" for rows_of in peers.values())
+        rows.append((what, f"{mine:.3g}", *cells))
+    return rows, notes

@@ -1,7 +1,5 @@
 """The Kalman filter against the same filter in plain C (`filter.c`), and with its smoother, on a spin of 1 deg/s at 1 Hz.
 
-    python benchmarks/filter.py [SAMPLES]
-
 Both filters run the same arithmetic on the same samples and must agree to 1e-9. Without a C compiler there is no ratio.
 """
 
@@ -10,7 +8,6 @@ from __future__ import annotations
 import ctypes
 import shutil
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -21,13 +18,16 @@ from fieldline.estimation.motion import random_walk
 from fieldline.estimation.series import Series, make_series
 from fieldline.estimation.smoothing import EMPTY_BLOCKS, EMPTY_STATES, EMPTY_WHITE, smooth
 from fieldline.simulate.free_flight import rotate_to_body
+from measure import best_of, best_of_each
 
 SOURCE = Path(__file__).with_name("filter.c")
 FLAGS = ("-O3", "-march=native", "-shared", "-fPIC")
 NOISE = Noise(white=2e-7, jitter=0.01)
+SLOW = NOISE._replace(coloured=2e-7)
 MODEL = random_walk(3e-5)
 SPIN_RAD_S = np.radians(1.0)
 AGREE = 1e-9  # of unit quaternions and rad/s: the same arithmetic but for rounding
+SAMPLES = 20_000
 
 
 def spinning(samples: int) -> tuple[Series, np.ndarray]:
@@ -45,10 +45,10 @@ def spinning(samples: int) -> tuple[Series, np.ndarray]:
     return series, np.concatenate([q_bi[0], SPIN_RAD_S * axis])
 
 
-def numba_filter(series: Series, start: np.ndarray) -> np.ndarray:
+def numba_filter(series: Series, start: np.ndarray, noise: Noise = NOISE) -> np.ndarray:
     """(7,) last state, by the library."""
-    row, prior = np.concatenate([start, np.zeros(3)])[None], prior_blocks(0.1, 0.01)
-    filter_forward(series, True, 0.0, row, prior, NOISE, MODEL, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
+    row, prior = np.concatenate([start, np.zeros(3)])[None], prior_blocks(0.1, 0.01, noise.coloured)
+    filter_forward(series, True, 0.0, row, prior, noise, MODEL, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
     return row[0, :7]
 
 
@@ -72,30 +72,29 @@ def c_filter(folder: Path):
     return run
 
 
-def rows(samples: int, best_of) -> list[tuple[str, float, str]]:
-    """(what, samples a second, remark) of the filters; best_of(call) gives the seconds of the best of several runs."""
-    series, start = spinning(samples)
-    ours = samples / best_of(lambda: numba_filter(series, start))
-    both = samples / best_of(lambda: smooth(series, start, NOISE, MODEL))
-    slow = samples / best_of(lambda: smooth(series, start, NOISE._replace(coloured=2e-7), MODEL))
+def table() -> list[tuple[str, str, str]]:
+    """(what, million samples a second, remark)."""
+    series, start = spinning(SAMPLES)
+    calls = {"filter": lambda: numba_filter(series, start)}
     with tempfile.TemporaryDirectory() as folder:
         plain_c = c_filter(Path(folder))
-        if plain_c is None:
-            first = [("filter", ours, "no C compiler here: no ratio")]
-        else:
+        if plain_c is not None:
+            calls["C"] = lambda: plain_c(series, start)
             apart = np.abs(plain_c(series, start) - numba_filter(series, start)).max()
             if not apart < AGREE:
                 raise SystemExit(f"the filter and its C twin end {apart:.1e} apart; {AGREE:g} was expected.")
-            theirs = samples / best_of(lambda: plain_c(series, start))
-            first = [
-                ("filter, six states", ours, f"{ours / theirs:.2f} of C (states agree to {apart:.0e})"),
-                ("the same in C", theirs, " ".join(("gcc", *FLAGS[:2]))),
-            ]
-    return [*first, ("filter and smoother, six states", both, ""), ("filter and smoother with the slow error, nine", slow, "")]
-
-
-if __name__ == "__main__":
-    from measure import best_of
-
-    for what, rate, remark in rows(int(sys.argv[1]) if len(sys.argv) == 2 else 100_000, best_of):
-        print(f"{what:46}{rate / 1e6:8.3f} million samples/s  {remark}")
+        rate = {name: SAMPLES / seconds / 1e6 for name, seconds in best_of_each(calls).items()}
+    if plain_c is None:
+        rows = [("filter, six states", f"{rate['filter']:.2f}", "no C compiler here: no ratio")]
+    else:
+        remark = f"{rate['filter'] / rate['C']:.2f} of C; last states agree to {apart:.0e}"
+        rows = [
+            ("filter, six states", f"{rate['filter']:.2f}", remark),
+            ("the same in C", f"{rate['C']:.2f}", " ".join(FLAGS[:2])),
+        ]
+    slow = SAMPLES / best_of(lambda: numba_filter(series, start, SLOW)) / 1e6
+    rows.append(("filter, nine states (with the slow error)", f"{slow:.2f}", ""))
+    for what, noise in (("six", NOISE), ("nine", SLOW)):
+        both = SAMPLES / best_of(lambda noise=noise: smooth(series, start, noise, MODEL)) / 1e6
+        rows.append((f"filter and smoother, {what} states", f"{both:.2f}", "runs the filter twice, in chunks, and keeps all"))
+    return rows
