@@ -31,7 +31,7 @@ def calibrate(
     clock_scan: bool = False,
     use: Sequence[str] = (),
 ) -> Calibration | tuple[Calibration, ...]:
-    """Bias, matrix and, where the data support them, gain, drift and couplings of a magnetometer.
+    """Bias, matrix and, where the data support them, gain, drift, step in sunlight and couplings of a magnetometer.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def with_clock_scan(
         return reference_along_orbit(later, orbit, model).magnitude
 
     columns = [name for name in COLUMNS if getattr(telemetry, COLUMNS[name]) is not None]
-    flight = _shifted(_flight(telemetry, reference.magnitude, columns), np.datetime64(calibration.epoch_utc, "ns"))
+    flight = _shifted(_flight(telemetry, reference, columns), np.datetime64(calibration.epoch_utc, "ns"))
     scan = scan_of(calibration, flight, magnitude_at)
     return replace(calibration, clock=scan, sentences=(*calibration.sentences, scan.sentence()))
 
@@ -81,11 +81,24 @@ def calibrate_against(
     unknown = [name for name in use if name not in COLUMNS]
     if unknown:
         raise InputError(f'use: there is no column "{unknown[0]}"; {nearest(unknown[0], COLUMNS)}')
-    flights = [_flight(t, r.magnitude, use) for t, r in zip(flown, references, strict=True)]
+    flights = [_flight(t, r, use) for t, r in zip(flown, references, strict=True)]
     return calibrate_flights(_on_one_clock(flights), model=calibration)
 
 
-def _flight(telemetry: Telemetry, magnitude_tesla: np.ndarray, use: Sequence[str]) -> Flight:
+def sunlit_along(reference: Reference) -> np.ndarray:
+    """(n,) share of the Sun's disc that is seen, 0 to 1: what stands in for the current of the solar panels."""
+    from fieldline.environment import eclipse
+
+    return eclipse(reference.position_i, reference.time_utc)
+
+
+def columns_for(calibration: Calibration, telemetry: Telemetry, reference: Reference) -> dict[str, np.ndarray | None]:
+    """The columns that this calibration's `apply`, `gain_at` and `propagated_std` need, by their arguments' names."""
+    given = {COLUMNS[name]: getattr(telemetry, COLUMNS[name]) for name in COLUMNS if getattr(calibration.terms, name)}
+    return given | ({"sunlit": sunlit_along(reference)} if calibration.terms.sunlit else {})
+
+
+def _flight(telemetry: Telemetry, reference: Reference, use: Sequence[str]) -> Flight:
     """What the calibration sees of a telemetry."""
     given = {COLUMNS[name]: getattr(telemetry, COLUMNS[name]) for name in use}
     missing = [name for name in use if given[COLUMNS[name]] is None]
@@ -94,10 +107,11 @@ def _flight(telemetry: Telemetry, magnitude_tesla: np.ndarray, use: Sequence[str
     return Flight(
         seconds=telemetry.seconds,
         field_s=telemetry.field_s,
-        magnitude_tesla=magnitude_tesla,
+        magnitude_tesla=reference.magnitude,
         usable=telemetry.usable,
         epoch_utc=telemetry.epoch_utc,
         name=telemetry.name,
+        sunlit=sunlit_along(reference),
         **given,
     )
 

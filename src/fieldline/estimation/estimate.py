@@ -15,7 +15,7 @@ import numpy as np
 
 from fieldline.errors import InputError, NoEstimateError, nearest
 from fieldline.estimation.attitude_dataset import attitude_dataset
-from fieldline.estimation.calibrate import COLUMNS, calibrate_against
+from fieldline.estimation.calibrate import COLUMNS, calibrate_against, columns_for
 from fieldline.estimation.calibration import Calibration
 from fieldline.estimation.consistency import consistency
 from fieldline.estimation.judgement import SPREAD_LIMIT, judge_gyro, judge_line, judge_sun, meeting
@@ -177,11 +177,9 @@ def _calibrated(telemetry, reference, calibration, use, report) -> tuple[Arc, bo
     free = not isinstance(calibration, Calibration) and calibration != "none"
     if isinstance(calibration, Calibration):
         found = calibration
-        needed = tuple(name for name in COLUMNS if getattr(found.terms, name))
-        columns = tuple(dict.fromkeys(columns + needed))
     else:
         found = calibrate_against([telemetry], [reference], calibration=calibration, use=columns)[0]
-    given = {COLUMNS[name]: getattr(telemetry, COLUMNS[name]) for name in columns}
+    given = columns_for(found, telemetry, reference)
     gyro_b = telemetry.rate_b if "gyro" in use else None
     arc = Arc(telemetry=telemetry, reference=reference, calibration=found, columns=given, gyro_b=gyro_b)
     report("calibration", 1, 1, f"{found.model}, residual {1e6 * found.residual_rms_tesla:.2f} µT RMS")
@@ -260,21 +258,30 @@ def _rivals(solution: Solution) -> list[str]:
 def _candidates(solution: Solution) -> list[dict]:
     """Every contender with its fate, plain types."""
     best = solution.winner
+    share = effective_share(best.smoothed.white)
     rows = []
     for contender in solution.contenders:
         left = contender.smoothed.predicted(solution.series) - solution.series.field_b + contender.smoothed.slow_b
         used = solution.series.used
-        behind = best.log_likelihood - contender.log_likelihood
         rows.append(
             {
                 "name": contender.candidate.words,
                 "kept": contender is best,
                 "log_likelihood": float(contender.log_likelihood),
                 "residual_rms_nt": float(1e9 * np.sqrt((left[used] ** 2).mean())),
-                "words": "the likeliest" if contender is best else f"dropped: {behind:,.0f} less likely in the logarithm",
+                "words": _fate(contender is best, share * (best.log_likelihood - contender.log_likelihood)),
             }
         )
     return rows
+
+
+def _fate(kept: bool, behind: float) -> str:
+    """Why a candidate was kept or dropped; behind: in log-likelihood, after the samples' memory."""
+    if kept:
+        return "kept: the likeliest for the numbers it needs"
+    if behind <= 0.0:
+        return f"dropped: likelier by {-behind:.1f} (logarithm), too little for the further numbers that it fits"
+    return f"dropped: less likely by {behind:,.1f} (logarithm, after the samples' memory)"
 
 
 def _verdict(arc: Arc, solution: Solution, smoothed: Smoothed, judgement: list[dict], use, seed: int) -> dict:

@@ -55,7 +55,7 @@ class Noise(NamedTuple):
     gate: float = 25.0
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def noise_matrix(w, body, noise):
     """R of (2)."""
     u = cross(w, body)
@@ -64,7 +64,7 @@ def noise_matrix(w, body, noise):
     return (r2 + t2 * u[0] * u[0], xy, xz, xy, r2 + t2 * u[1] * u[1], yz, xz, yz, r2 + t2 * u[2] * u[2])
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def innovation(ref, error, rate, p, measured, reference, noise, coloured):
     """Whitened residual, h, gains, S^-1 v, S^-1 and log-likelihood of one vector; beyond the gate R is stretched."""
     q, _, c = ref
@@ -86,14 +86,14 @@ def innovation(ref, error, rate, p, measured, reference, noise, coloured):
     return white, h, ga, gr, gc, matvec(s_inv, residual), s_inv, log_likelihood
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _row_state(states, k):
     """q, w, c of a row."""
     r = states[k]
     return (r[0], r[1], r[2], r[3]), (r[4], r[5], r[6]), (r[7], r[8], r[9])
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _row_error(errors, k):
     """Errors e, dw, dc of a row."""
     r = errors[k]
@@ -118,13 +118,13 @@ def _put_error(errors, k, error):
             errors[k, 3 * part + j] = error[part][j]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _shifted(ref, error):
     """The state that lies by an error off a reference."""
     return quat_unit(quat_mul(ref[0], quat_exp(error[0]))), add(ref[1], error[1]), add(ref[2], error[2])
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _fade(h, noise, coloured):
     """f of (3) and the variance that the coloured error gains over h."""
     if not coloured:
@@ -133,7 +133,7 @@ def _fade(h, noise, coloured):
     return f, (1.0 - f * f) * noise.coloured * noise.coloured
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _predicted(ref, error, series, k, step, model, noise, coloured, path):
     """Reference and error at row k from those a step before, and the step's F: without a path the reference moves along.
 

@@ -33,29 +33,30 @@ class Contender:
         return self.smoothed.log_likelihood
 
 
-def screen(series: Series, candidates: list[Candidate], noise: Noise) -> list[tuple[float, Candidate]]:
-    """Candidates with their best log-likelihood under SCREEN_NOISES, the likeliest first."""
+def screen(series: Series, candidates: list[Candidate], noise: Noise) -> list[tuple[float, float, Candidate]]:
+    """Candidates with their best log-likelihood under SCREEN_NOISES and that rate noise, the likeliest first."""
     scored = []
     for candidate in candidates:
-        best = -np.inf
+        best, quietest = -np.inf, SCREEN_NOISES[0]
         for rate_noise in SCREEN_NOISES:
             model = candidate.motion.model(rate_noise)
             start = state_at_first(series, candidate.row, candidate.state, noise, model)
             if np.isfinite(start).all():
                 value = log_likelihood(series, start, noise, model)
-                best = max(best, value) if np.isfinite(value) else best
+                if np.isfinite(value) and value > best:
+                    best, quietest = value, rate_noise
         if np.isfinite(best):
-            scored.append((best, candidate))
-    return sorted(scored, key=lambda pair: -pair[0])
+            scored.append((best, quietest, candidate))
+    return sorted(scored, key=lambda row: -row[0])
 
 
 def contend(series: Series, candidates: list[Candidate], noise: Noise, noise_tesla: float) -> list[Contender]:
     """The likeliest candidates after longer fits and two passes of the smoother, the likeliest first."""
     contenders = []
-    for _, candidate in screen(series, candidates, noise)[:KEPT]:
+    for _, rate_noise, candidate in screen(series, candidates, noise)[:KEPT]:
         if candidate.motion.shape is not None or candidate.motion.inertia is not None:
             candidate = lengthened(series, candidate, noise_tesla)
-        model = candidate.motion.model(SCREEN_NOISES[1])
+        model = candidate.motion.model(rate_noise)
         start = state_at_first(series, candidate.row, candidate.state, noise, model)
         model = best_rate_noise(series, start, noise, model)
         start = state_at_first(series, candidate.row, candidate.state, noise, model)

@@ -29,6 +29,7 @@ from fieldline.estimation.tuning import LONGEST, magnitude_noise, middle_rows, t
 
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
 POLISH_ROUNDS = 4
+FINAL_PASSES = 4
 QUIET_ROUNDS = 6
 UNSURE_STRETCH = 2.0
 QUIET_NOISES = (1e-6, 1e-7)  # [rad/s/sqrt(s)]
@@ -83,7 +84,7 @@ def solve(
     winner, smoothed, constants, _ = max(polished, key=lambda one: one[3])
     series = series_of(_calibration_part(constants, calibration_values))
     progress("refine", 0.7, 1.0, "uncertainty")
-    smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=2)
+    smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=FINAL_PASSES)
     smoothed = widen_by_field_model(widen(smoothed, constants, series_of), series, seed)
     progress("refine", 1.0, 1.0, "")
     return Solution(
@@ -234,8 +235,8 @@ class _Climbed(NamedTuple):
 def _polished(job: _Polish, series: Series, winner: Contender, values, covariance, unsure: bool):
     """A contender with its constants and noise at the top of the posterior: itself, motion, constants, score.
 
-    Where the calibration is unsure, the tops are several: a rate that wanders freely agrees with any calibration. The climb
-    is then repeated from rates held quiet, and the highest top counts.
+    Where the calibration is unsure, or a body's shape is sought, the tops are several: a rate that wanders freely agrees
+    with any constants. The climb is then repeated from rates held quiet, and the highest top counts.
     """
     motion, smoothed = winner.candidate.motion, winner.smoothed
     rigid = smoothed.model.rigid
@@ -246,9 +247,10 @@ def _polished(job: _Polish, series: Series, winner: Contender, values, covarianc
     first_row = job.rows.start
     start = np.concatenate([smoothed.q_bi[first_row], smoothed.omega_b[first_row]])
     tops = [job.climb(constants, start, smoothed.noise, smoothed.model, None)]
-    if unsure:
+    quiet_noises = QUIET_NOISES if unsure else QUIET_NOISES[:1] if rigid else ()
+    if quiet_noises:
         plain = smoothed.noise._replace(white=job.floor, coloured=0.5 * job.floor, coloured_time=SLOW_ERROR_TIME)
-        tops += [job.climb(constants, start, plain, smoothed.model, quiet) for quiet in QUIET_NOISES]
+        tops += [job.climb(constants, start, plain, smoothed.model, quiet) for quiet in quiet_noises]
     best = max(tops, key=lambda top: top.score if np.isfinite(top.score) else -np.inf)
     first = smoothed.start if first_row else best.start
     found = best.constants

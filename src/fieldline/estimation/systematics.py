@@ -35,6 +35,10 @@ def widen(smoothed: Smoothed, constants: Constants, series_of: Callable[[np.ndar
         return smoothed
     scale = np.sqrt(np.diag(constants.prior_covariance))
     values, vectors = np.linalg.eigh(constants.covariance / np.outer(scale, scale))
+    # the same step about the same path without the change, so that what the iteration still moves is not taken for doubt
+    base = smooth(
+        series_of(constants.values[: constants.calibrated]), smoothed.start, smoothed.noise, smoothed.model, about=smoothed
+    )
     covariance = smoothed.attitude_covariance_b.copy()
     rate_var = smoothed.rate_std_b**2
     for j in np.argsort(values)[::-1][:MOST_DIRECTIONS]:
@@ -44,9 +48,9 @@ def widen(smoothed: Smoothed, constants: Constants, series_of: Callable[[np.ndar
         moved = _with(constants, constants.values + 0.1 * np.sqrt(values[j]) * vectors[:, j] * scale)
         series = series_of(moved.values[: constants.calibrated])
         other = smooth(series, smoothed.start, smoothed.noise, moved.model(smoothed.model), about=smoothed)
-        error = 10.0 * rotation_error_b(other.q_bi, smoothed.q_bi)
+        error = 10.0 * rotation_error_b(other.q_bi, base.q_bi)
         covariance += error[:, :, None] * error[:, None, :]
-        rate_var += (10.0 * (other.omega_b - smoothed.omega_b)) ** 2
+        rate_var += (10.0 * (other.omega_b - base.omega_b)) ** 2
     return replace(smoothed, attitude_covariance_b=covariance, rate_std_b=np.sqrt(rate_var))
 
 
@@ -60,6 +64,7 @@ def widen_by_field_model(smoothed: Smoothed, series: Series, seed: int) -> Smoot
     rng = np.random.default_rng(seed)
     start = np.concatenate([smoothed.q_bi[rows.start], smoothed.omega_b[rows.start]])
     base = smooth(arc, start, smoothed.noise, smoothed.model, passes=2)
+    base = smooth(arc, base.start, smoothed.noise, smoothed.model, about=base)
     dcm_ib = np.swapaxes(dcm_from_quaternion(base.q_bi), 1, 2)
     size = max(FIELD_MODEL_STD, standing_error(base, arc))
     spread, rate_var = np.zeros((3, 3)), np.zeros(3)

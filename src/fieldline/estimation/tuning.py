@@ -37,9 +37,20 @@ def middle_rows(series: Series) -> slice:
 
 
 def best_rate_noise(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> RateModel:
-    """The model with the rate noise of RATE_NOISES under which the arc is likeliest."""
-    trials = [model._replace(noise=float(s)) for s in RATE_NOISES]
-    return max(trials, key=lambda trial: _finite(log_likelihood(series, start, noise, trial)))
+    """The model with the rate noise of RATE_NOISES under which the arc is likeliest, climbing from the nearest to its own."""
+    seen: dict[int, float] = {}
+
+    def value(index: int) -> float:
+        if index not in seen:
+            seen[index] = _finite(log_likelihood(series, start, noise, model._replace(noise=float(RATE_NOISES[index]))))
+        return seen[index]
+
+    at = int(np.argmin(np.abs(np.log(RATE_NOISES / max(model.noise, RATE_NOISES[0])))))
+    while True:
+        best = max((k for k in (at - 1, at, at + 1) if 0 <= k < len(RATE_NOISES)), key=value)
+        if best == at:
+            return model._replace(noise=float(RATE_NOISES[at]))
+        at = best
 
 
 def tune(

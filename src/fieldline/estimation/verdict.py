@@ -14,6 +14,11 @@ RIVAL_ANGLE_DEG = 20.0
 RIVAL_LIKELIHOOD = 6.0  # of the logarithm, after the innovations' memory is taken off
 
 
+def degrees(value: float) -> str:
+    """0.24°, 3.1°, 130°: two digits, never an exponent."""
+    return f"{float(f'{value:.2g}'):g}°" if value < 1e4 else "unknown"
+
+
 def angle_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(n,) [rad] between rows."""
     return np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), np.sum(a * b, axis=1))
@@ -23,8 +28,8 @@ def judge_usable(
     std_deg: np.ndarray, worst_deg: float, misfit_deg: float, rivals: list[str], consistency: dict
 ) -> tuple[bool, str]:
     """Whether the estimate may be used, and the sentence."""
-    attitude = " ".join(f"{v:.2g}°" for v in std_deg)
-    stated = f"attitude known to {attitude} (1σ about body x, y, z; median over the arc, {worst_deg:.2g}° at worst)"
+    attitude = " ".join(degrees(v) for v in std_deg)
+    stated = f"attitude known to {attitude} (1σ about body x, y, z; median over the arc, {degrees(worst_deg)} at worst)"
     if misfit_deg > LARGEST_MISFIT_DEG:
         return False, (
             f"No usable attitude: the best motion misses the measured field's direction by {misfit_deg:.0f}° RMS. "

@@ -120,8 +120,12 @@ def fit(
     """Minimise (1) from `theta` and, where it is known, from a scale, which each round renews."""
     if scale is None:
         scale = robust_scale(distances(terms, theta, samples))
-    residual, converged = distances(terms, theta, samples.lengthened(scale)), terms.size == 0
-    for _ in range(rounds if terms.size else 0):
+    if not terms.size:
+        residual = distances(terms, theta, samples.lengthened(scale))
+        scale = robust_scale(residual)
+        return Fit(terms, theta, residual, scale, cost_of(prior, theta, residual, scale), True)
+    residual, converged = np.empty(0), False
+    for _ in range(rounds):
         expected = samples.lengthened(scale)
         residual = distances(terms, theta, expected)
         theta, residual, converged = _descend(terms, theta, residual, expected, prior, scale, steps, settled)
