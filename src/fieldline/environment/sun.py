@@ -48,7 +48,10 @@ def sun_position_i(time_utc) -> np.ndarray:
 
 
 def sun_direction_i(time_utc) -> np.ndarray:
-    """Unit vectors from the Earth's centre to the Sun's, (..., 3), GCRS axes; to 0.01 deg from any low orbit."""
+    """Unit vectors from the Earth's centre to the Sun's, (..., 3), GCRS axes; to 0.01 deg from any low orbit.
+
+    time_utc : (...) datetime64, 1900 to 2100; InputError outside.
+    """
     position = sun_position_i(time_utc)
     return position / np.linalg.norm(position, axis=-1, keepdims=True)
 

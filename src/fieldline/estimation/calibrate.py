@@ -43,7 +43,8 @@ def calibrate(
 
     Returns
     -------
-    Calibration for one Telemetry; a tuple of them, in order, for several.
+    Calibration for one Telemetry; a tuple of them, in order, for several. Its `apply` turns raw readings (n, 3) [T] into
+    the field (n, 3) [T] in body axes.
 
     Errors: InputError for what cannot be read as asked; NoEstimateError where the data do not support a calibration.
     """

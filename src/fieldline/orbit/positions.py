@@ -71,6 +71,7 @@ def orbit_from_positions(
     time_utc : (n,) datetime64, UTC, increasing.
     position_e_m : (n, 3) [m], ITRS axes; rows that are not finite are left out.
     eop : measured Earth orientation; UT1 = UTC without it (no matter for positions asked back in ITRS).
+    name : what the orbit is called in reports.
 
     Errors: InputError for fewer than four positions, times out of order, radii that are no satellite's, axes that look
     inertial. Times outside the positions, or in pauses over 300 s, are refused when asked for.

@@ -34,6 +34,10 @@ def read_orbit(path: str | Path, *, norad_id: int | None = None, eop: EarthOrien
     norad_id : which satellite, where the file holds several.
     eop : measured Earth orientation for the Earth-fixed axes (`read_eop`); UT1 = UTC without it.
 
+    Returns
+    -------
+    `Orbit`: state_i(time_utc) gives position (n, 3) [m] and velocity (n, 3) [m/s] in GCRS, position_e(time_utc) in ITRS.
+
     Errors: InputError for a file that is missing, empty, of another kind, damaged, or of several satellites.
     """
     text, source = read_text(path, "orbit file"), Path(path).name

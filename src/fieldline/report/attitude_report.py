@@ -16,7 +16,12 @@ if TYPE_CHECKING:
 
 
 def write_report(estimate: xarray.Dataset, path: str | Path) -> Path:
-    """Write the report on a Dataset of `estimate_attitude` as one self-contained HTML file, whole or not at all.
+    """Write the report on an estimate as one self-contained HTML file, whole or not at all.
+
+    Parameters
+    ----------
+    estimate : Dataset of `estimate_attitude`, in SI; the report shows degrees, kilometres and microtesla, and says so.
+    path : the file to write.
 
     Errors: InputError where the folder does not exist or cannot be written to.
     """
