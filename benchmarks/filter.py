@@ -16,7 +16,7 @@ import numpy as np
 from fieldline.estimation.kalman import Noise, filter_forward, prior_blocks
 from fieldline.estimation.motion import random_walk
 from fieldline.estimation.series import Series, make_series
-from fieldline.estimation.smoothing import EMPTY_BLOCKS, EMPTY_STATES, EMPTY_WHITE, smooth
+from fieldline.estimation.smoothing import NO_PATH, NOTHING, smooth
 from fieldline.simulate.free_flight import rotate_to_body
 from measure import best_of, best_of_each
 
@@ -48,7 +48,7 @@ def spinning(samples: int) -> tuple[Series, np.ndarray]:
 def numba_filter(series: Series, start: np.ndarray, noise: Noise = NOISE) -> np.ndarray:
     """(7,) last state, by the library."""
     row, prior = np.concatenate([start, np.zeros(3)])[None], prior_blocks(0.1, 0.01, noise.coloured)
-    filter_forward(series, True, 0.0, row, prior, noise, MODEL, EMPTY_STATES, EMPTY_BLOCKS, EMPTY_WHITE)
+    filter_forward(series, True, 0.0, row, np.zeros((1, 9)), prior, noise, MODEL, NO_PATH, *NOTHING)
     return row[0, :7]
 
 

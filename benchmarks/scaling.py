@@ -17,7 +17,7 @@ import numpy as np
 
 import fieldline as fl
 from fieldline.estimation.calibration import calibrate_magnitude
-from fieldline.estimation.series import make_series
+from fieldline.estimation.series import make_series, part
 from fieldline.estimation.smoothing import smooth
 from fieldline.simulate.free_flight import rotate_to_body
 from filter import MODEL, SLOW
@@ -63,8 +63,9 @@ def stages(samples: int) -> dict:
     magnitude = np.linalg.norm(field, axis=1)
     series = make_series(seconds, raw - BIAS, field, position, np.ones(samples, dtype=bool))
     start = np.concatenate([q_bi[0], SPIN_B])
-    few = slice(0, 600)
-    smooth(make_series(seconds[few], raw[few] - BIAS, field[few], position[few], np.ones(600, dtype=bool)), start, SLOW, MODEL)
+    few = slice(0, 600)  # so that no stage compiles while it is timed
+    smooth(part(series, few), start, SLOW, MODEL)
+    calibrate_magnitude(seconds[few], raw[few], magnitude[few])
     taken = {}
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "record.csv"
