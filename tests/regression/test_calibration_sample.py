@@ -5,6 +5,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
+import fieldline as fl
 from fieldline.environment import magnetic_field
 from fieldline.estimation.calibration import calibrate_magnitude
 from fieldline.orbit import read_orbit
@@ -45,3 +46,13 @@ def test_the_gain_is_chosen_and_leaves_less_than_seven_tenths(flown):
     assert np.all(found.bias_std_s < 0.5e-6)
     assert found.clock.offsets_s[int(np.argmin(found.clock.rms_tesla))] == pytest.approx(0.0, abs=15.0)
     assert found.clock.sigmas < 3.0
+
+
+def test_the_panels_step_at_the_edges_of_eclipse_is_taken_out(flown):
+    orbit = read_orbit(files("fieldline") / "data" / "suchai3.tle")
+    found = fl.calibrate(flown[0], orbit)
+    assert found.model == "full+gain+sunlit"
+    assert found.residual_rms_tesla < 0.42e-6
+    place = found.terms.layout["sunlit"]
+    assert found.values[place] == pytest.approx([-0.7e-6, 2.0e-6, -0.2e-6], abs=4e-7)
+    assert np.all(found.std[place] < 3e-7)

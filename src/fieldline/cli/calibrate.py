@@ -78,6 +78,7 @@ def _shown(calibration: Any, telemetry: Any, orbit: Any, model: str) -> Any:
     import numpy as np
 
     from fieldline.environment import eclipse
+    from fieldline.estimation.calibrate import columns_for
     from fieldline.estimation.reference import reference_along_orbit
     from fieldline.report.calibration_report import CalibratedFlight
     from fieldline.report.record import dark_spells
@@ -86,10 +87,8 @@ def _shown(calibration: Any, telemetry: Any, orbit: Any, model: str) -> Any:
     field_b = calibration.apply(
         telemetry.seconds,
         telemetry.field_s,
-        temperature_k=telemetry.temperature_k,
-        dipole_command_b=telemetry.dipole_command_b,
-        solar_current=telemetry.solar_current,
         epoch_utc=telemetry.epoch_utc,
+        **columns_for(calibration, telemetry, reference),
     )
     later_s = float((telemetry.epoch_utc - calibration.epoch_utc) / np.timedelta64(1, "s"))
     summary = calibration.summary()

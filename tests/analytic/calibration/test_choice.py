@@ -59,6 +59,32 @@ def test_slow_terms_are_refused_to_a_slow_satellite(flight):
     assert any("turns too slowly" in c.why for c in found.candidates)
 
 
+def test_sunlight_without_a_step_is_not_chosen(flight):
+    for seed in range(3):
+        flown = flight("spinning", seed, step_s=2.0)
+        found = calibrated(flown, sunlit=(np.abs(flown.seconds - 2000.0) > 1070.0).astype(float))
+        assert found.model == "full"
+        assert any("sunlit" in c.model for c in found.candidates)
+
+
+def test_sunlight_is_not_tried_without_an_edge(flight):
+    flown = flight("spinning", step_s=4.0)
+    found = calibrated(flown, sunlit=np.ones(len(flown.seconds)))
+    assert not any("sunlit" in c.model for c in found.candidates)
+    with pytest.raises(InputError, match="never changes"):
+        calibrated(flown, sunlit=np.ones(len(flown.seconds)), model="full+sunlit")
+    arguments = {"seconds": flown.seconds, "field_s": flown.field_s, "magnitude_tesla": flown.magnitude}
+    pair = [Flight(**arguments, sunlit=np.full(len(flown.seconds), k)) for k in (0.0, 1.0)]
+    assert not any("sunlit" in c.model for c in calibrate_flights(pair)[0].candidates)
+
+
+def test_sunlight_is_refused_to_a_slow_satellite(flight):
+    flown = flight("earth", step_s=2.0)
+    found = calibrated(flown, sunlit=(np.abs(flown.seconds - 2000.0) > 1070.0).astype(float))
+    assert not found.terms.sunlit
+    assert all("turns too slowly" in c.why for c in found.candidates if "sunlit" in c.model)
+
+
 def test_held_out_stretches_do_not_reward_needless_terms(flight):
     assert all(calibrated(flight("spinning", k, step_s=2.0)).model == "full" for k in range(3))
 

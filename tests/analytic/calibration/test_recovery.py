@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from fieldline.errors import InputError
 from fieldline.estimation.calibration import Flight, calibrate_flights, calibrate_magnitude
 from fieldline.estimation.calibration.face import gather
 from fieldline.estimation.calibration.fit import prior_of
 from fieldline.estimation.calibration.ladder import BASIC, best_fit
-from fieldline.estimation.calibration.model import Samples, Terms, corrected, distances, field_jacobian, linearised
-from fieldline.estimation.calibration.spline import spline_over
 from fieldline.estimation.calibration.start import centred_bias, centred_matrix
 
 SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
@@ -121,6 +120,21 @@ def test_couplings_are_recovered(flight):
     assert np.sqrt(np.mean((applied - flown.field_b) ** 2)) < 3.3e-7
 
 
+def test_a_step_in_sunlight_is_recovered(flight):
+    step, sunlit = np.array([-7e-7, 2e-6, -2e-7]), lambda t: np.clip((np.abs(t - 2000.0) - 1070.0) / 8.0, 0.0, 1.0)
+    flown = flight("spinning", 2, gain=0.03, extra=lambda t: np.outer(sunlit(t), step))
+    lit = sunlit(flown.seconds)
+    found = calibrated(flown, sunlit=lit)
+    place = found.terms.layout["sunlit"]
+    assert found.model == "full+gain+sunlit"
+    assert np.all(np.abs(found.values[place] - step) < 4.0 * found.std[place])
+    applied = found.apply(flown.seconds, flown.field_s, sunlit=lit)
+    assert np.sqrt(np.mean((applied - flown.field_b) ** 2)) < 3.3e-7
+    assert "in sunlight" in found.summary()["sentence"]
+    with pytest.raises(InputError, match="sunlit"):
+        found.apply(flown.seconds, flown.field_s)
+
+
 def test_temperature_gain_is_recovered(flight):
     flown = flight()
     temperature = 290.0 + 12.0 * np.sin(flown.seconds / 700.0) + 3.0 * np.sin(flown.seconds / 130.0)
@@ -155,30 +169,6 @@ def test_a_fixed_rotation_of_the_sensor_changes_no_magnitude(flight):
     r = turned.as_matrix()
     assert other.matrix == pytest.approx(r @ one.matrix @ r.T, abs=1e-4)
     assert other.residual_rms_tesla == pytest.approx(one.residual_rms_tesla, rel=1e-3)
-
-
-def test_derivatives_are_those_of_differences(flight):
-    rng = np.random.default_rng(0)
-    flown = flight(step_s=60.0)
-    n = len(flown.seconds)
-    samples = Samples(
-        flown.seconds, flown.field_s / 4e-5, flown.magnitude / 4e-5, np.zeros(n, dtype=int), np.linspace(-0.5, 0.5, n),
-        rng.standard_normal(n), rng.standard_normal((n, 3)), rng.standard_normal(n),
-    )  # fmt: skip
-    for gain in ("reading", "field"):
-        terms = Terms("all", True, "full", gain, True, True, True, True, (spline_over(0.0, flown.seconds[-1]),))
-        theta = 0.02 * rng.standard_normal(terms.size)
-        theta[:9] += np.concatenate([flown.bias / 4e-5, flown.matrix[SIX]])
-        _, where, jacobian = linearised(terms, theta, samples)
-        _, field_slope = field_jacobian(terms, theta, samples)
-        for column, k in enumerate(where):
-            step = np.zeros(terms.size)
-            step[k] = 1e-5
-            ahead, behind = theta + step, theta - step
-            slope = (distances(terms, ahead, samples) - distances(terms, behind, samples)) / 2e-5
-            assert np.abs(slope - jacobian[:, column]).max() < 1e-7
-            slope = (corrected(terms, ahead, samples)[0] - corrected(terms, behind, samples)[0]) / 2e-5
-            assert np.abs(slope - field_slope[:, :, column]).max() < 1e-7
 
 
 def test_robust_prior_never_decides_where_data_do(flight):

@@ -26,8 +26,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from fieldline.estimation.calibration.distance import block_kernel, information_kernel, matrix9, mirrored_half, problem_of
-from fieldline.estimation.calibration.fit import DEGREES, Fit, Prior, influence_slope, normal_equations, prior_of, weights_of, with_prior
+from fieldline.estimation.calibration.distance import block_kernel, information_of, matrix9, mirrored_half, problem_of
+from fieldline.estimation.calibration.fit import (
+    DEGREES,
+    Fit,
+    Prior,
+    influence_slope,
+    normal_equations,
+    prior_of,
+    weights_of,
+    with_prior,
+)
 from fieldline.estimation.calibration.model import Samples, Terms, gain_sums
 from fieldline.estimation.calibration.twin import twin
 
@@ -79,11 +88,10 @@ def score_spread(
     terms: Terms, theta: np.ndarray, samples: Samples, scale: float, length: int, error: float | None = None
 ) -> np.ndarray:
     """S of (1) for blocks of `length` samples: of the residuals, or of a constant `error` in their place."""
-    spread, problem, matrix = np.zeros((terms.size, terms.size)), problem_of(terms, samples), matrix9(terms, theta)
     if length == 1 and error is None:
-        information_kernel(theta, matrix, *problem, scale, DEGREES, True, spread, np.zeros(terms.size))
-    else:
-        block_kernel(theta, matrix, *problem, scale, DEGREES, np.nan if error is None else error, length, spread)
+        return information_of(terms, theta, samples, scale, DEGREES, squared=True)[0].dense()
+    spread, problem, matrix = np.zeros((terms.size, terms.size)), problem_of(terms, samples), matrix9(terms, theta)
+    block_kernel(theta, matrix, *problem, scale, DEGREES, np.nan if error is None else error, length, spread)
     return mirrored_half(spread)
 
 
@@ -122,11 +130,16 @@ def widened(fit: Fit, samples: Samples) -> tuple[Terms, np.ndarray, Prior]:
     return terms, theta, Prior(theta if fit.terms.matrix != "full" else prior.mean, information, gain_sums(terms, samples) / 1e-6)
 
 
-def covariance_of(fit: Fit, samples: Samples, field_model_std: float) -> tuple[Terms, np.ndarray, np.ndarray]:
-    """The widened terms and parameters, and their covariance (1); `field_model_std` in units of the samples."""
+def covariance_of(
+    fit: Fit, samples: Samples, field_model_std: float, bounded: bool = False
+) -> tuple[Terms, np.ndarray, np.ndarray]:
+    """The widened terms and parameters, and their covariance (1); `field_model_std` in units of the samples.
+
+    `bounded`: for the greater of the two S take their sum, which is no smaller and needs no eigenvectors.
+    """
     terms, theta, prior = widened(fit, samples)
     samples = samples.lengthened(fit.scale)
-    information, _ = normal_equations(terms, theta, samples, fit.scale)
+    information = normal_equations(terms, theta, samples, fit.scale)[0].dense()
     information *= influence_slope(fit.residual, fit.scale)
     length = block_length(fit)
     blocks = len(samples) / length
@@ -134,17 +147,22 @@ def covariance_of(fit: Fit, samples: Samples, field_model_std: float) -> tuple[T
     single = score_spread(terms, theta, samples, fit.scale, 1)
     # Unseen directions have no scores at all: a trace of the information keeps the floor's factor invertible.
     single += 1e-9 * np.diag(np.diag(information) + prior.information)
+    greater = spread + single if bounded else _greater(spread, single)
+    inverse = np.linalg.inv(with_prior(information, prior))
+    modelled = score_spread(terms, theta, samples, fit.scale, field_model_block(samples), field_model_std)
+    covariance = inverse @ (greater + np.diag(prior.information) + modelled) @ inverse
+    worth = len(samples) / effective_samples(clipped(fit)) + field_model_block(samples) * (field_model_std / fit.scale) ** 2
+    away, odds = twin(fit, samples, worth)
+    return terms, theta, covariance + odds * np.outer(*[_as_widened(fit, terms, away)] * 2)
+
+
+def _greater(spread: np.ndarray, single: np.ndarray) -> np.ndarray:
+    """The matrix that is `spread` but in no direction less than `single`."""
     root = np.linalg.cholesky(single)
     inside = np.linalg.solve(root, np.linalg.solve(root, spread).T)
     values, vectors = np.linalg.eigh(0.5 * (inside + inside.T))
     half = root @ vectors * np.sqrt(np.maximum(values, 1.0))
-    inverse = np.linalg.inv(with_prior(information, prior))
-    left = inverse @ half
-    modelled = score_spread(terms, theta, samples, fit.scale, field_model_block(samples), field_model_std)
-    covariance = left @ left.T + inverse @ (np.diag(prior.information) + modelled) @ inverse
-    worth = len(samples) / effective_samples(clipped(fit)) + field_model_block(samples) * (field_model_std / fit.scale) ** 2
-    away, odds = twin(fit, samples, worth)
-    return terms, theta, covariance + odds * np.outer(*[_as_widened(fit, terms, away)] * 2)
+    return half @ half.T
 
 
 def _as_widened(fit: Fit, terms: Terms, away: np.ndarray) -> np.ndarray:

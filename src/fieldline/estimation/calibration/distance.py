@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from fieldline.estimation.calibration.arrow import Arrow, empty_arrow
 from fieldline.estimation.calibration.model import TINY, Samples, Terms
 from fieldline.estimation.calibration.spline import basis_at
 from fieldline.frames.matrices import matvec
@@ -209,19 +210,31 @@ def shared_size(form, parameters):
     return form.gain if form.gain >= 0 else parameters
 
 
+def information_of(
+    terms: Terms, theta: np.ndarray, samples: Samples, sigma: float, degrees: float, squared: bool = False
+) -> tuple[Arrow, np.ndarray]:
+    """Sum f J J^T and sum weight J d / sigma^2; f and weight as of `information_kernel`."""
+    shared = terms.layout["gain"].start if "gain" in terms.layout else terms.size
+    total, gradient = empty_arrow(shared, terms.size - shared), np.zeros(terms.size)
+    information_kernel(theta, matrix9(terms, theta), *problem_of(terms, samples), sigma, degrees, squared, *total, gradient)
+    return total, gradient
+
+
 @njit(cache=True)
-def information_kernel(theta, matrix, table, splines, form, sigma, degrees, squared, total, gradient):
-    """Adds sum f J J^T to `total` (lower half) and sum weight J d / sigma^2 to `gradient`.
+def information_kernel(
+    theta, matrix, table, splines, form, sigma, degrees, squared, shared_total, coupling_total, band_total, gradient
+):
+    """Adds sum f J J^T to the parts of an `Arrow` and sum weight J d / sigma^2 to `gradient`.
 
     f is weight / sigma^2, or with `squared` (weight d / sigma^2)^2; weight that of Student's t with `degrees`.
     """
-    shared = shared_size(form, len(theta))
+    shared = len(shared_total)
     size = shared + (4 if form.gain >= 0 else 0)
     row, square, sums, held = np.empty(size), np.zeros((size, size)), np.zeros(size), ABSENT
     for k in range(len(table)):
         distance, first = row_at(k, theta, matrix, table, splines, form, row)
         if first != held:
-            spill(square, sums, shared, held, total, gradient)
+            spill(square, sums, shared, held, shared_total, coupling_total, band_total, gradient)
             held = first
         weight = (degrees + 1.0) / (degrees + (distance / sigma) ** 2) / sigma**2
         factor = (weight * distance) ** 2 if squared else weight
@@ -230,18 +243,22 @@ def information_kernel(theta, matrix, table, splines, form, sigma, degrees, squa
             for b in range(a + 1):
                 square[a, b] += scaled * row[b]
             sums[a] += weight * distance * row[a]
-    spill(square, sums, shared, held, total, gradient)
+    spill(square, sums, shared, held, shared_total, coupling_total, band_total, gradient)
 
 
 @njit(cache=True)
-def spill(square, sums, shared, first, total, gradient):
+def spill(square, sums, shared, first, shared_total, coupling_total, band_total, gradient):
     """Moves what was gathered over one interval of the spline to its place."""
     for a in range(len(sums)):
-        i = place_of(a, shared, first)
-        gradient[i] += sums[a]
+        gradient[place_of(a, shared, first)] += sums[a]
         sums[a] = 0.0
         for b in range(a + 1):
-            total[i, place_of(b, shared, first)] += square[a, b]
+            if a < shared:
+                shared_total[a, b] += square[a, b]
+            elif b < shared:
+                coupling_total[first - shared + a - shared, b] += square[a, b]
+            else:
+                band_total[first - shared + a - shared, a - b] += square[a, b]
             square[a, b] = 0.0
 
 

@@ -178,7 +178,9 @@ def terms_named(model: str, samples: Samples, splines: tuple[UniformSpline, ...]
         terms = replace(terms, **EXTENSIONS[word])
     for name in COLUMNS:
         if getattr(terms, name) and getattr(samples, name) is None:
-            raise InputError(f'model "{model}" needs the column "{name}" of every flight; it was not given or never changes.')
+            raise InputError(
+                f'model "{model}" needs the column "{name}" of every flight; it was not given or never changes within one.'
+            )
     if terms.gain != "none" and not splines:
         raise NoEstimateError(f'model "{model}": an arc of {np.ptp(samples.seconds):.0f} s is too short for a slow gain.')
     if terms.drift and flights > 1:
@@ -210,6 +212,8 @@ def gather(flights: list[Flight] | tuple[Flight, ...]) -> tuple[Samples, Units]:
     dipole, _, dipole_size = column("dipole")
     current, _, current_size = column("current")
     sunlit, _, sunlit_size = column("sunlit")
+    if sunlit is not None and not any(np.ptp(c.sunlit) > 0.0 for c in checked):
+        sunlit = None  # light and dark flights without an edge: a step is not seen
     samples = Samples(
         seconds, join("field_s") / unit, join("magnitude") / unit, join("flight"), (seconds - middle) / arc_s,
         temperature, dipole, current, sunlit,

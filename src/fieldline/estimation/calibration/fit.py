@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fieldline.estimation.calibration.distance import distances, information_kernel, matrix9, mirrored_half, problem_of
+from fieldline.estimation.calibration.arrow import Arrow
+from fieldline.estimation.calibration.distance import distances, information_of
 from fieldline.estimation.calibration.model import Samples, Terms, gain_sums
 
 DEGREES = 4.0
@@ -93,12 +94,9 @@ def cost_of(prior: Prior, theta: np.ndarray, residual: np.ndarray, scale: float)
     )  # fmt: skip
 
 
-def normal_equations(terms: Terms, theta: np.ndarray, samples: Samples, scale: float) -> tuple[np.ndarray, np.ndarray]:
+def normal_equations(terms: Terms, theta: np.ndarray, samples: Samples, scale: float) -> tuple[Arrow, np.ndarray]:
     """Sum of weight J J^T / s^2 and of weight J r / s^2; the data alone."""
-    matrix, gradient = np.zeros((terms.size, terms.size)), np.zeros(terms.size)
-    problem = problem_of(terms, samples)
-    information_kernel(theta, matrix9(terms, theta), *problem, scale, DEGREES, False, matrix, gradient)
-    return mirrored_half(matrix), gradient
+    return information_of(terms, theta, samples, scale, DEGREES)
 
 
 def with_prior(matrix: np.ndarray, prior: Prior) -> np.ndarray:
@@ -149,7 +147,7 @@ def _descend(
     cost, damping = cost_of(prior, theta, residual, scale), 1e-6
     matrix, gradient = _system(terms, theta, samples, prior, scale, residual)
     for _ in range(steps):
-        step = -np.linalg.solve(matrix + damping * np.diag(np.diag(matrix)), gradient)
+        step = _step(matrix, gradient, damping, prior.gain_row)
         promised = -float(gradient @ step)
         trial = theta + step
         trial_residual = distances(terms, trial, samples)
@@ -167,9 +165,15 @@ def _descend(
 
 def _system(
     terms: Terms, theta: np.ndarray, samples: Samples, prior: Prior, scale: float, residual: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature and gradient of (1)."""
+) -> tuple[Arrow, np.ndarray]:
+    """Curvature, but for the row that fixes the mean gain, and gradient of (1)."""
     matrix, gradient = normal_equations(terms, theta, samples, scale)
     row = prior.gain_row
-    curvature = with_prior(matrix * influence_slope(residual, scale), prior)
+    curvature = matrix.scaled(influence_slope(residual, scale)).with_diagonal(prior.information)
     return curvature, gradient + prior.information * (theta - prior.mean) + row * float(row @ theta)
+
+
+def _step(curvature: Arrow, gradient: np.ndarray, damping: float, row: np.ndarray) -> np.ndarray:
+    """- (curvature, damped, + row row^T)^-1 gradient, by Sherman and Morrison's formula, since the row fills the band."""
+    both = curvature.with_diagonal(damping * curvature.diagonal()).solve(np.stack([gradient, row], axis=1))
+    return both[:, 1] * float(row @ both[:, 0]) / (1.0 + float(row @ both[:, 1])) - both[:, 0]

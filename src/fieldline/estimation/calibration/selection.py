@@ -15,6 +15,7 @@ are. Besides, whatever predicts, a candidate is refused when
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,6 +37,7 @@ LARGEST_ERROR = 0.15
 EIGENVALUES = (0.5, 2.0)
 GAIN_REACH = 0.2
 MOST_TERMS = 4
+MANY = 64  # parameters, beyond which the uncertainty is only bounded while candidates are compared
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,7 @@ class Candidate:
     why: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Trial:
     """A fitted candidate with the losses of its held-out blocks."""
 
@@ -60,7 +62,15 @@ class Trial:
     block_size: np.ndarray
     held_out_rms: float
     refusal: str
-    error: float
+    samples: Samples
+    field_model_std: float
+
+    @cached_property
+    def error(self) -> float:
+        """RMS uncertainty of the field that the parameters cause, as a fraction of the field."""
+        many = self.fit.terms.size > MANY
+        covariance = covariance_of(self.fit, self.samples, self.field_model_std, bounded=many)
+        return _rms(field_std(*covariance, _few(self.samples))) / float(np.median(self.samples.magnitude))
 
     @property
     def criterion(self) -> float:
@@ -122,11 +132,6 @@ def refusal_of(one: Fit, samples: Samples) -> str:
     return ""
 
 
-def relative_error(one: Fit, samples: Samples, field_model_std: float) -> float:
-    """RMS uncertainty of the field that the parameters cause, as a fraction of the field."""
-    return _rms(field_std(*covariance_of(one, samples, field_model_std), _few(samples))) / float(np.median(samples.magnitude))
-
-
 def trial(terms: Terms, samples: Samples, blocks: np.ndarray, field_model_std: float, simpler: Fit | None = None) -> Trial:
     """Fit a candidate, hold out its blocks, judge its conditioning."""
     one = best_fit(terms, samples, simpler)
@@ -137,7 +142,8 @@ def trial(terms: Terms, samples: Samples, blocks: np.ndarray, field_model_std: f
         np.bincount(blocks).astype(float),
         rms,
         refusal_of(one, samples),
-        relative_error(one, samples, field_model_std),
+        samples,
+        field_model_std,
     )
 
 
@@ -171,10 +177,10 @@ def _judge(rival: Trial, kept: Trial, tried: list[tuple[Trial, str]]) -> Trial:
     won = drop > LEAST_GAIN and chance < CLEAR_LEVEL
     if rival.refusal:
         won, why = False, rival.refusal
-    elif rival.error > LARGEST_ERROR and rival.error >= kept.error:
-        won, why = False, f"the readings leave directions unseen: the field would be uncertain by {rival.error:.0%}"
     elif not won:
         why = f'does not clearly predict held-out stretches better than "{name}" ({drop:+.3f}, chance {chance:.1g})'
+    elif rival.error > LARGEST_ERROR and rival.error >= kept.error:
+        won, why = False, f"the readings leave directions unseen: the field would be uncertain by {rival.error:.0%}"
     tried.append((rival, why))
     return rival if won else kept
 

@@ -38,6 +38,9 @@ def _result(found: Calibration) -> str:
         return f'Calibration "{found.model}": nothing fitted, {rms}.'
     pairs = ", ".join(f"{b * 1e6:.2f} ± {s * 1e6:.2f}" for b, s in zip(found.bias_s, found.bias_std_s, strict=True))
     gain = ""
+    if found.terms.sunlit:
+        step = found.values[found.terms.layout["sunlit"]]
+        gain = ", in sunlight (" + ", ".join(f"{s * 1e6:+.2f}" for s in step) + ") µT more"
     if found.terms.gain != "none":
-        gain = f", gain {np.min(found.gain_values):.3f} to {np.max(found.gain_values):.3f}"
+        gain += f", gain {np.min(found.gain_values):.3f} to {np.max(found.gain_values):.3f}"
     return f'Calibration "{found.model}": bias ({pairs}) µT{gain}, {rms}.'
