@@ -1,6 +1,6 @@
 """3 x 3 matrices as tuples of nine floats, row by row, for kernels such as the block filter.
 
-    matmul(a, b) = a b      matmul_t(a, b) = a b^T      transpose(a) = a^T      matvec(a, v) = a v
+matmul(a, b) = a b      matmul_t(a, b) = a b^T      transpose(a) = a^T      matvec(a, v) = a v
 """
 
 from __future__ import annotations
@@ -104,9 +104,7 @@ def symmetric(a):
 @njit(cache=True)
 def determinant(a):
     """Det a."""
-    return (
-        a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6])
-    )
+    return a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6])
 
 
 @njit(cache=True, error_model="numpy")
