@@ -11,8 +11,8 @@ the residuals' memory (twice the last lag with |autocorrelation| over 0.1, at mo
 taken smaller, in any direction, than with blocks of one sample, and is enlarged by b / (b - 1) for b blocks, since the fit
 makes the scores' sum vanish.
 
-The field model's own magnitude is not true either: what it lacks (crust, magnetosphere, ionosphere: about 50 nT in low orbit
-on a quiet day) hangs together over ten minutes, too long to be seen in the residuals of one arc. S therefore receives the
+The field model's own magnitude is not true either: what it lacks (crust, magnetosphere, ionosphere; 50 nT in low orbit is
+our assumption, not a measurement) hangs together over ten minutes, too long to be seen in the residuals of one arc. S therefore receives the
 scores that such an error would make, block of ten minutes by block.
 
 Terms that the chosen candidate leaves out (the matrix of a bias-only fit) are not known to be absent: they enter (1) with
