@@ -12,8 +12,8 @@ taken smaller, in any direction, than with blocks of one sample, and is enlarged
 makes the scores' sum vanish.
 
 The field model's own magnitude is not true either: what it lacks (crust, magnetosphere, ionosphere; 50 nT in low orbit is
-our assumption, not a measurement) hangs together over ten minutes, too long to be seen in the residuals of one arc. S therefore receives the
-scores that such an error would make, block of ten minutes by block.
+our assumption, not a measurement) hangs together over ten minutes, too long to be seen in the residuals of one arc. S
+therefore receives the scores that such an error would make, block of ten minutes by block.
 
 Terms that the chosen candidate leaves out (the matrix of a bias-only fit) are not known to be absent: they enter (1) with
 a prior of their own (`omitted_std`).

@@ -234,7 +234,8 @@ def information_kernel(
     for k in range(len(table)):
         distance, first = row_at(k, theta, matrix, table, splines, form, row)
         if first != held:
-            spill(square, sums, shared, held, shared_total, coupling_total, band_total, gradient)
+            if held >= 0:
+                spill(square, sums, shared, held, shared_total, coupling_total, band_total, gradient)
             held = first
         weight = (degrees + 1.0) / (degrees + (distance / sigma) ** 2) / sigma**2
         factor = (weight * distance) ** 2 if squared else weight
