@@ -24,7 +24,8 @@ from fieldline.estimation.reference import Reference, reference_along_orbit
 from fieldline.estimation.series import Series, make_series, part
 from fieldline.estimation.smoothing import Smoothed, smooth
 from fieldline.estimation.solution import Solution, solve
-from fieldline.estimation.verdict import RIVAL_ANGLE_DEG, RIVAL_LIKELIHOOD, angle_between, judge_usable
+from fieldline.estimation.tuning import magnitude_noise
+from fieldline.estimation.verdict import RIVAL_ANGLE_DEG, RIVAL_LIKELIHOOD, angle_between, judge_usable, refuse_magnitude
 from fieldline.frames.attitude import rotation_error_b
 from fieldline.mechanics.rigid_body import as_inertia9
 from fieldline.orbit import Orbit, orbit_from_positions
@@ -129,6 +130,7 @@ def estimate_attitude(
     reference = reference_along_orbit(telemetry.time_utc, orbit, model, degree)
     report("field", 1, 1, f"{reference.model} along {reference.orbit['kind']}")
     arc, free = _calibrated(telemetry, reference, calibration, use, report)
+    refuse_magnitude(magnitude_noise(arc.series(None)), float(np.median(reference.magnitude)))
     inertia = None if inertia_kg_m2 is None else np.reshape(as_inertia9(inertia_kg_m2)[0], (3, 3))
     values, spread = (arc.calibration.values, arc.calibration.covariance) if free else (None, None)
     solution = solve(

@@ -129,6 +129,8 @@ def polish(
         return np.nan_to_num(white), share * total - 0.5 * off @ precision @ off
 
     values, (white, score) = constants.values, run(constants.values)
+    if not np.isfinite(score):
+        return constants, 0.0
     first, normal = score, precision
     for _ in range(rounds):
         slopes = _slopes(run, values, white, scale, noise.gate)

@@ -25,7 +25,7 @@ from fieldline.estimation.series import Series, part
 from fieldline.estimation.smoothing import Smoothed, smooth
 from fieldline.estimation.starts import Candidate, find_starts
 from fieldline.estimation.systematics import widen, widen_by_field_model
-from fieldline.estimation.tuning import LONGEST, magnitude_noise, middle_rows, tune
+from fieldline.estimation.tuning import LONGEST, magnitude_noise, middle_rows, substeps, tune
 
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
 POLISH_ROUNDS = 4
@@ -77,9 +77,9 @@ def solve(
     contenders, tried, remarks = _contenders(series, noise, floor, inertia, progress)
     settled = _settled(series, contenders, floor)
     progress("refine", 0.4, 1.0, settled[0].candidate.words)
-    job = _Polish(series_of=series_of, volume_of=volume_of, rows=middle_rows(series), floor=floor)
+    job = _Polish(series_of=series_of, volume_of=volume_of, floor=floor)
     # a calibration that is unsure judges the rate models only once it has been found with each of them
-    rivals = settled if unsure else settled[:1]
+    rivals = [r for r in settled if r is settled[0] or (unsure and substeps(series, r.smoothed.model, r.smoothed.start) < 3)]
     polished = [_polished(job, series, rival, calibration_values, calibration_covariance, unsure) for rival in rivals]
     winner, smoothed, constants, _ = max(polished, key=lambda one: one[3])
     series = series_of(_calibration_part(constants, calibration_values))
@@ -177,8 +177,8 @@ class _Polish:
 
     series_of: SeriesOf
     volume_of: Callable[[np.ndarray, slice], float]
-    rows: slice
     floor: float
+    rows: slice | None = None
 
     def arc(self, constants: Constants) -> Series:
         return part(self.series_of(constants.values[: constants.calibrated]), self.rows)
@@ -244,10 +244,13 @@ def _polished(job: _Polish, series: Series, winner: Contender, values, covarianc
     constants = gather_constants(values, covariance, motion.shape if rigid else None, dipole, motion.inertia)
     if constants.values.size == 0:
         return winner, smoothed, constants, winner.log_likelihood
+    parts = substeps(series, smoothed.model, smoothed.start)
+    job = replace(job, rows=middle_rows(series, parts))
     first_row = job.rows.start
     start = np.concatenate([smoothed.q_bi[first_row], smoothed.omega_b[first_row]])
     tops = [job.climb(constants, start, smoothed.noise, smoothed.model, None)]
-    quiet_noises = QUIET_NOISES if unsure else QUIET_NOISES[:1] if rigid else ()
+    # a fast spinner shows its calibration and its shape by itself, and its rigid motion is dear to follow
+    quiet_noises = () if parts > 2 else QUIET_NOISES if unsure else QUIET_NOISES[:1] if rigid else ()
     if quiet_noises:
         plain = smoothed.noise._replace(white=job.floor, coloured=0.5 * job.floor, coloured_time=SLOW_ERROR_TIME)
         tops += [job.climb(constants, start, plain, smoothed.model, quiet) for quiet in quiet_noises]

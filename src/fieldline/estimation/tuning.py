@@ -12,11 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 from fieldline.estimation.kalman import Noise
-from fieldline.estimation.motion import RateModel
+from fieldline.estimation.motion import LARGEST_TURN, RateModel
 from fieldline.estimation.series import Series
 from fieldline.estimation.smoothing import log_likelihood
 
 LARGEST_EXCESS = np.log(1.25)  # of the noise over the magnitude's residual
+FEWEST = 2_000
 LONGEST = 20_000  # rows that a tuning reads: the middle of a longer arc
 RATE_NOISES = np.geomspace(1e-7, 1e-2, 11)  # [rad/s/sqrt(s)] first look, from a quiet boom to a thruster
 
@@ -29,11 +30,19 @@ def magnitude_noise(series: Series) -> float:
     return float(max(np.sqrt(np.mean(np.clip(left, -5 * inner, 5 * inner) ** 2)), 1e-9))
 
 
-def middle_rows(series: Series) -> slice:
-    """At most LONGEST rows from the middle of an arc."""
+def middle_rows(series: Series, parts: int = 1) -> slice:
+    """At most LONGEST rows from the middle of an arc, fewer where each takes several substeps (`substeps`)."""
     n = len(series.seconds)
-    first = max(0, (n - LONGEST) // 2)
-    return slice(first, min(n, first + LONGEST))
+    most = max(FEWEST, LONGEST // parts)
+    first = max(0, (n - most) // 2)
+    return slice(first, min(n, first + most))
+
+
+def substeps(series: Series, model: RateModel, start: np.ndarray) -> int:
+    """How many substeps the rate model takes between two samples."""
+    if not model.rigid:
+        return 1
+    return 1 + int(np.linalg.norm(start[4:7]) * float(np.median(np.diff(series.seconds))) / LARGEST_TURN)
 
 
 def best_rate_noise(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> RateModel:
@@ -80,7 +89,7 @@ def tune(
 
     x = np.log([noise.white, max(noise.coloured, 0.1 * floor), noise.coloured_time, model.noise])[: 3 if hold_rate else 4]
     simplex = x + np.vstack([np.zeros(x.size), np.diag([0.5, 0.7, 1.0, 1.2][: x.size])])
-    options = {"xatol": 0.03, "fatol": 0.3, "maxfev": 220, "initial_simplex": simplex}
+    options = {"xatol": 0.03, "fatol": 0.3, "maxfev": 160, "initial_simplex": simplex}
     found = minimize(cost, x, method="Nelder-Mead", options=options)
     tuned, rate = decode(found.x)
     return tuned, rate, -float(found.fun)

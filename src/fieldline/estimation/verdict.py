@@ -8,10 +8,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from fieldline.errors import NoEstimateError
+
 LARGEST_STD_DEG = 30.0  # about the worst axis, in the median: beyond, the attitude is a guess
 LARGEST_MISFIT_DEG = 15.0  # RMS angle between measured and predicted field: beyond, the motion does not explain the data
+LARGEST_MAGNITUDE_SHARE = 0.08  # of the field: ten times what a poor calibration leaves
 RIVAL_ANGLE_DEG = 20.0
 RIVAL_LIKELIHOOD = 6.0  # of the logarithm, after the innovations' memory is taken off
+
+
+def refuse_magnitude(residual_tesla: float, field_tesla: float) -> None:
+    """NoEstimateError where even the calibrated magnitude does not follow the model's along the orbit."""
+    share = residual_tesla / field_tesla
+    if share > LARGEST_MAGNITUDE_SHARE:
+        raise NoEstimateError(
+            f"No usable attitude: even the magnitude of the calibrated field misses the model's by {100 * share:.0f} % RMS, "
+            "which no attitude can mend. Check that orbit and time stamps (UTC) belong to this satellite, the unit, and the "
+            "calibration."
+        )
 
 
 def degrees(value: float) -> str:
