@@ -15,8 +15,6 @@ from fieldline.estimation.calibration_file import calibrations_to_json, nearest_
 DATA = Path(str(files("fieldline"))) / "data"
 SAMPLE, ELEMENTS = DATA / "suchai3_2023-08-24.csv", DATA / "suchai3.tle"
 
-pytestmark = pytest.mark.kernels
-
 
 @pytest.fixture(scope="module")
 def flown():
