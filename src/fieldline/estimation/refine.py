@@ -17,6 +17,7 @@ from fieldline.estimation.starts import Candidate, lengthened
 from fieldline.estimation.tuning import best_rate_noise, tune
 
 KEPT = 4  # candidates of a kind that are smoothed
+LENGTHENED = 4  # candidates, by the fit of their windows
 SCREEN_NOISES = (1e-6, 3e-5, 1e-3)  # [rad/s/sqrt(s)] rate noises of the screening
 
 
@@ -53,9 +54,13 @@ def screen(series: Series, candidates: list[Candidate], noise: Noise) -> list[tu
 def contend(series: Series, candidates: list[Candidate], noise: Noise, noise_tesla: float) -> list[Contender]:
     """The likeliest candidates after longer fits and two passes of the smoother, the likeliest first."""
     contenders = []
-    for _, rate_noise, candidate in screen(series, candidates, noise)[:KEPT]:
-        if candidate.motion.shape is not None or candidate.motion.inertia is not None:
-            candidate = lengthened(series, candidate, noise_tesla)
+    # a rigid motion that explains its window is lengthened before the whole arc judges it: a shape known to a per cent
+    # loses its phase within some dozen turns, and would lose to a worse one with a freer rate
+    longer = [
+        lengthened(series, c, noise_tesla) if rank < LENGTHENED and c.motion.model().rigid else c
+        for rank, c in enumerate(candidates)
+    ]
+    for _, rate_noise, candidate in screen(series, longer, noise)[:KEPT]:
         model = candidate.motion.model(rate_noise)
         start = state_at_first(series, candidate.row, candidate.state, noise, model)
         model = best_rate_noise(series, start, noise, model)

@@ -18,7 +18,8 @@ from fieldline.estimation.series import Series, part
 
 NO_PATH = np.empty((0, STATES))
 NOTHING = (NO_PATH, np.empty((0, 9)), np.empty((0, cov.BLOCKS)), np.empty((0, 3)))  # states, errors, blocks, white
-FIRST_ATTITUDE_STD = 1.0  # [rad] the first sample's attitude is free
+FREE_ATTITUDE_STD = 1.8  # [rad] pi / sqrt(3): any angle about the field is as likely as any other
+START_ATTITUDE_STD = 0.3  # [rad] of a start that a fit has found
 DIAGONAL = np.array([0, 4, 8])
 
 
@@ -69,20 +70,28 @@ def _start_row(start: np.ndarray) -> np.ndarray:
     return row
 
 
-def rate_prior(start: np.ndarray) -> float:
-    """[rad/s] spread of the first rate: a fifth of it, at least 0.5 deg/s, for a start that came from a fit."""
-    return max(0.2 * float(np.linalg.norm(start[4:7])), np.radians(0.5))
+def first_prior(start: np.ndarray, noise: Noise, free: bool) -> np.ndarray:
+    """(1, 54) covariance before the first sample.
+
+    free: nothing is known of the attitude, and of the rate to a fifth; a pass about a path can do with that, and its
+    covariance is then the data's own. Otherwise as well as a fit's start is known: an extended filter that forgets it
+    wanders off to other motions before the field has turned.
+    """
+    size = float(np.linalg.norm(start[4:7]))
+    if free:
+        return prior_blocks(FREE_ATTITUDE_STD, max(0.2 * size, np.radians(0.5)), noise.coloured)
+    return prior_blocks(START_ATTITUDE_STD, max(0.05 * size, np.radians(0.2)), noise.coloured)
 
 
 def log_likelihood(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> float:
-    """Log-likelihood of an arc's innovations from a start (7,), the first attitude free."""
-    row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
+    """Log-likelihood of an arc's innovations from a start (7,) that a fit has found."""
+    row, prior = _start_row(start), first_prior(start, noise, False)
     return filter_forward(series, True, 0.0, row, np.zeros((1, 9)), prior, noise, model, NO_PATH, *NOTHING)
 
 
 def innovations(series: Series, start: np.ndarray, noise: Noise, model: RateModel) -> tuple[np.ndarray, float]:
-    """Whitened innovations (n, 3) of an arc and their log-likelihood, from a start (7,), the first attitude free."""
-    row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
+    """Whitened innovations (n, 3) of an arc and their log-likelihood, from a start (7,) that a fit has found."""
+    row, prior = _start_row(start), first_prior(start, noise, False)
     white = np.empty_like(series.field_b)
     total = filter_forward(series, True, 0.0, row, np.zeros((1, 9)), prior, noise, model, NO_PATH, *NOTHING[:3], white)
     return white, total
@@ -93,7 +102,7 @@ def state_at_first(series: Series, row: int, state: np.ndarray, noise: Noise, mo
     if row == 0:
         return state
     back = part(series, slice(row, None, -1))
-    start, prior = _start_row(state), prior_blocks(0.3, rate_prior(state), noise.coloured)
+    start, prior = _start_row(state), first_prior(state, noise, False)
     filter_forward(back, True, 0.0, start, np.zeros((1, 9)), prior, noise, model, NO_PATH, *NOTHING)
     return start[0, :7].copy()
 
@@ -121,7 +130,7 @@ def _smooth_once(series: Series, start: np.ndarray, noise: Noise, model: RateMod
     """One pass forward, remembering the state at the chunks' borders, and one backward, chunk by chunk."""
     n = len(series.seconds)
     borders = list(range(0, n, CHUNK))
-    row, prior = _start_row(start), prior_blocks(FIRST_ATTITUDE_STD, rate_prior(start), noise.coloured)
+    row, prior = _start_row(start), first_prior(start, noise, path.shape[0] > 0)
     offset, saved, total = np.zeros((1, 9)), [], 0.0
     for first in borders:
         saved.append((row.copy(), offset.copy(), prior.copy()))

@@ -27,7 +27,7 @@ BRANCH_TURN = np.radians(6.0)  # of the field, from where the angle about it beg
 FINAL_TURN = np.radians(50.0)
 AZIMUTHS = 8
 MODEL_ERROR = 0.01  # of the field: what a smooth motion may miss by its own simplicity
-LONGEST_TURN = 500.0  # [rad] of a fit without process noise; the filter's own polish goes on from there
+LONGEST_TURN = 1000.0  # [rad] of a fit without process noise; the filter's own polish goes on from there
 SAME_ANGLE = np.radians(3.0)
 
 
