@@ -56,8 +56,9 @@ def contend(series: Series, candidates: list[Candidate], noise: Noise, noise_tes
     contenders = []
     # a rigid motion that explains its window is lengthened before the whole arc judges it: a shape known to a per cent
     # loses its phase within some dozen turns, and would lose to a worse one with a freer rate
+    step = float(np.median(np.diff(series.seconds)))
     longer = [
-        lengthened(series, c, noise_tesla) if rank < LENGTHENED and c.motion.model().rigid else c
+        lengthened(series, c, noise_tesla) if c.motion.model().rigid and rank < _most(c, step) else c
         for rank, c in enumerate(candidates)
     ]
     for _, rate_noise, candidate in screen(series, longer, noise)[:KEPT]:
@@ -69,6 +70,11 @@ def contend(series: Series, candidates: list[Candidate], noise: Noise, noise_tes
         if np.isfinite(result.log_likelihood):
             contenders.append(Contender(candidate=candidate, smoothed=result))
     return sorted(contenders, key=lambda c: -c.log_likelihood)
+
+
+def _most(candidate: Candidate, step_s: float) -> int:
+    """How many candidates are lengthened: fewer where the body turns far between samples, which is dear to follow."""
+    return LENGTHENED if np.linalg.norm(candidate.motion.omega_b) * step_s < 0.4 else LENGTHENED // 2
 
 
 def settle(series: Series, contender: Contender, floor: float) -> Contender:

@@ -25,7 +25,7 @@ from fieldline.estimation.series import Series, part
 from fieldline.estimation.smoothing import Smoothed, smooth
 from fieldline.estimation.starts import Candidate, find_starts
 from fieldline.estimation.systematics import widen, widen_by_field_model
-from fieldline.estimation.tuning import LONGEST, magnitude_noise, middle_rows, substeps, tune
+from fieldline.estimation.tuning import magnitude_noise, middle_rows, substeps, tune
 
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
 POLISH_ROUNDS = 4
@@ -153,13 +153,15 @@ def _settled(series: Series, contenders: list[Contender], floor: float) -> list[
 
 
 def _settle_on_part(series: Series, contender: Contender, floor: float) -> Contender:
-    """`settle`; a long arc is tuned on its middle, then smoothed whole."""
-    if len(series.seconds) <= LONGEST:
+    """`settle`; a long arc, or one that is dear to follow, is tuned on its middle, then smoothed whole."""
+    before = contender.smoothed
+    rows = middle_rows(series, substeps(series, before.model, before.start))
+    if rows.stop - rows.start == len(series.seconds):
         return settle(series, contender, floor)
-    rows = middle_rows(series)
-    state = np.concatenate([contender.smoothed.q_bi[rows.start], contender.smoothed.omega_b[rows.start]])
-    noise, model, _ = tune(part(series, rows), state, contender.smoothed.noise, contender.smoothed.model, floor)
-    return replace(contender, smoothed=smooth(series, contender.smoothed.start, noise, model, passes=2))
+    state = np.concatenate([before.q_bi[rows.start], before.omega_b[rows.start]])
+    noise, model, _ = tune(part(series, rows), state, before.noise, before.model, floor)
+    after = smooth(series, before.start, noise, model, passes=2)
+    return replace(contender, smoothed=after) if after.log_likelihood > before.log_likelihood else contender
 
 
 def _penalised(contender: Contender, series: Series, share: float) -> float:
