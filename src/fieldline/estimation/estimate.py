@@ -23,7 +23,7 @@ from fieldline.estimation.polish import effective_share
 from fieldline.estimation.reference import Reference, reference_along_orbit
 from fieldline.estimation.series import Series, make_series, part
 from fieldline.estimation.smoothing import Smoothed, smooth
-from fieldline.estimation.solution import Solution, solve
+from fieldline.estimation.solution import Solution, extend, solve
 from fieldline.estimation.tuning import magnitude_noise
 from fieldline.estimation.verdict import RIVAL_ANGLE_DEG, RIVAL_LIKELIHOOD, angle_between, judge_usable, refuse_magnitude
 from fieldline.frames.attitude import rotation_error_b
@@ -32,6 +32,7 @@ from fieldline.orbit import Orbit, orbit_from_positions
 from fieldline.telemetry import Telemetry
 
 FEWEST = 30  # usable samples
+CORE_ROWS = 20_000  # of a longer arc: its middle, on which everything but attitude and rate is found
 LARGEST_STRETCH = 3.0  # of the whole arc's uncertainty: half an arc may go astray where the whole one does not
 UNSURE = 0.02  # of the field: a calibration this uncertain is found together with the motion
 USES = ("gyro", *COLUMNS)
@@ -76,6 +77,22 @@ class Arc:
         sign, size = np.linalg.slogdet(calibration.matrix)
         # a mirrored matrix is no calibration
         return float((3.0 * np.log(np.maximum(gain, 1e-9)) + size)[telemetry.usable[rows]].sum()) if sign > 0 else -np.inf
+
+    def core(self) -> tuple[Arc, slice]:
+        """The middle of a long arc, on which motion, noise and constants are found, and its rows."""
+        n = len(self.telemetry)
+        first = max(0, (n - CORE_ROWS) // 2)
+        rows = slice(first, min(n, first + CORE_ROWS))
+        if rows.stop - rows.start == n:
+            return self, rows
+        core = dataclasses.replace(
+            self,
+            telemetry=self.telemetry.slice(rows.start, rows.stop),
+            reference=self.reference.part(rows),
+            columns=self._columns_at(rows),
+            gyro_b=None if self.gyro_b is None else self.gyro_b[rows],
+        )
+        return core, rows
 
     def unsure(self) -> bool:
         """Whether the magnitudes left the calibrated field more uncertain than UNSURE of itself."""
@@ -133,9 +150,12 @@ def estimate_attitude(
     refuse_magnitude(magnitude_noise(arc.series(None)), float(np.median(reference.magnitude)))
     inertia = None if inertia_kg_m2 is None else np.reshape(as_inertia9(inertia_kg_m2)[0], (3, 3))
     values, spread = (arc.calibration.values, arc.calibration.covariance) if free else (None, None)
+    core, rows = arc.core()
     solution = solve(
-        arc.series, arc.volume, values, spread, unsure=free and arc.unsure(), inertia=inertia, progress=report, seed=seed,
+        core.series, core.volume, values, spread, unsure=free and core.unsure(), inertia=inertia, progress=report, seed=seed,
     )  # fmt: skip
+    if core is not arc:
+        solution = extend(solution, arc.series, values, rows.start, report)
     judgement, smoothed = _judged(arc, solution, report)
     verdict = _verdict(arc, solution, smoothed, judgement, use, seed)
     report("judge", 1, 1, verdict["sentence"])
@@ -241,9 +261,9 @@ def _halves(solution: Solution) -> tuple[np.ndarray, float] | None:
 
 def _rivals(solution: Solution) -> list[str]:
     """Contenders about as likely as the winner, in words, that stand elsewhere."""
-    series, smoothed = solution.series, solution.smoothed
+    smoothed = solution.winner.smoothed
     share = effective_share(smoothed.white)
-    middle = len(series.seconds) // 2
+    middle = len(solution.core.seconds) // 2
     rivals = []
     for other in solution.contenders:
         behind = share * (solution.winner.log_likelihood - other.log_likelihood)
@@ -263,8 +283,8 @@ def _candidates(solution: Solution) -> list[dict]:
     share = effective_share(best.smoothed.white)
     rows = []
     for contender in solution.contenders:
-        left = contender.smoothed.predicted(solution.series) - solution.series.field_b + contender.smoothed.slow_b
-        used = solution.series.used
+        left = contender.smoothed.predicted(solution.core) - solution.core.field_b + contender.smoothed.slow_b
+        used = solution.core.used
         rows.append(
             {
                 "name": contender.candidate.words,

@@ -150,7 +150,7 @@ def polish(
         if gained < LEAST_GAIN:
             break
     covariance = np.linalg.inv(normal) * np.outer(scale, scale)
-    return _with(constants, values, covariance), score - first
+    return _with(constants, values, covariance), float(score - first)
 
 
 def effective_share(white: np.ndarray) -> float:

@@ -17,6 +17,7 @@ from fieldline.estimation.starts import Candidate, lengthened
 from fieldline.estimation.tuning import best_rate_noise, tune
 
 KEPT = 4  # candidates of a kind that are smoothed
+MOST_SCREENED = 20  # candidates, by the fit of their windows, that are filtered at all
 LENGTHENED = 4  # candidates, by the fit of their windows
 SCREEN_NOISES = (1e-6, 3e-5, 1e-3)  # [rad/s/sqrt(s)] rate noises of the screening
 
@@ -59,7 +60,7 @@ def contend(series: Series, candidates: list[Candidate], noise: Noise, noise_tes
     step = float(np.median(np.diff(series.seconds)))
     longer = [
         lengthened(series, c, noise_tesla) if c.motion.model().rigid and rank < _most(c, step) else c
-        for rank, c in enumerate(candidates)
+        for rank, c in enumerate(candidates[:MOST_SCREENED])
     ]
     for _, rate_noise, candidate in screen(series, longer, noise)[:KEPT]:
         model = candidate.motion.model(rate_noise)

@@ -115,14 +115,12 @@ def smooth(
     The first pass linearises about the filter's own state, or about the path of `about`; each next one about the path of
     the one before.
     """
-    best = None
-    for _ in range(passes):
-        result = _smooth_once(series, start, noise, model, NO_PATH if about is None else about.path)
-        if best is None or result.log_likelihood > best.log_likelihood:
-            best = result
+    best = result = _smooth_once(series, start, noise, model, NO_PATH if about is None else about.path)
+    for _ in range(passes - 1):
         if not np.isfinite(result.q_bi).all():
             break
-        start, about = result.start, result
+        result = _smooth_once(series, result.start, noise, model, result.path)
+        best = result if result.log_likelihood > best.log_likelihood else best
     return best
 
 

@@ -22,7 +22,7 @@ from fieldline.estimation.natanson.candidates import natanson_candidates
 from fieldline.estimation.polish import Constants, effective_share, gather_constants, polish
 from fieldline.estimation.refine import Contender, contend, settle
 from fieldline.estimation.series import Series, part
-from fieldline.estimation.smoothing import Smoothed, smooth
+from fieldline.estimation.smoothing import Smoothed, smooth, state_at_first
 from fieldline.estimation.starts import Candidate, find_starts
 from fieldline.estimation.systematics import widen, widen_by_field_model
 from fieldline.estimation.tuning import magnitude_noise, middle_rows, substeps, tune
@@ -41,7 +41,10 @@ SeriesOf = Callable[[np.ndarray], Series]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Solution:
-    """The motion of an arc: `smoothed` with its widened covariance, constants, all contenders and the noise floor."""
+    """The motion of an arc: `smoothed` with its widened covariance, constants, all contenders and the noise floor.
+
+    added_covariance_b (3, 3) [rad2], added_rate_var (3,): what constants and field model add to it, mean over the arc.
+    """
 
     smoothed: Smoothed
     constants: Constants
@@ -51,6 +54,9 @@ class Solution:
     candidates_tried: int
     remarks: tuple[str, ...]
     series: Series
+    core: Series
+    added_covariance_b: np.ndarray
+    added_rate_var: np.ndarray
 
 
 def solve(
@@ -85,10 +91,13 @@ def solve(
     series = series_of(_calibration_part(constants, calibration_values))
     progress("refine", 0.7, 1.0, "uncertainty")
     smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=FINAL_PASSES)
-    smoothed = widen_by_field_model(widen(smoothed, constants, series_of), series, seed)
-    progress("refine", 1.0, 1.0, "")
+    widened = widen_by_field_model(widen(smoothed, constants, series_of), series, seed)
+    left = series.field_b - widened.slow_b - widened.predicted(series)
+    progress("refine", 1.0, 1.0, f"residual {1e6 * np.sqrt((left[series.used] ** 2).mean()):.2f} µT RMS")
     return Solution(
-        smoothed=smoothed,
+        smoothed=widened,
+        added_covariance_b=(widened.attitude_covariance_b - smoothed.attitude_covariance_b).mean(axis=0),
+        added_rate_var=(widened.rate_std_b**2 - smoothed.rate_std_b**2).mean(axis=0),
         constants=constants,
         contenders=tuple(settled + [c for c in contenders if all(c.candidate is not s.candidate for s in settled)]),
         winner=winner,
@@ -96,6 +105,30 @@ def solve(
         candidates_tried=tried,
         remarks=tuple(remarks),
         series=series,
+        core=series,
+    )
+
+
+def extend(solution: Solution, series_of: SeriesOf, calibration_values, first_row: int, progress: Progress) -> Solution:
+    """A solution of the middle of an arc carried over the whole of it, with the same constants and noise.
+
+    series_of gives the whole arc; first_row is where its middle begins. Costs two passes of the smoother.
+    """
+    progress("smooth", 0.0, 1.0, "the whole record")
+    core = solution.smoothed
+    series = series_of(_calibration_part(solution.constants, calibration_values))
+    state = np.concatenate([core.q_bi[0], core.omega_b[0]])
+    start = state_at_first(series, first_row, state, core.noise, core.model)
+    smoothed = smooth(series, start, core.noise, core.model, passes=2)
+    progress("smooth", 1.0, 1.0, f"{len(series.seconds):,} samples")
+    return replace(
+        solution,
+        series=series,
+        smoothed=replace(
+            smoothed,
+            attitude_covariance_b=smoothed.attitude_covariance_b + solution.added_covariance_b,
+            rate_std_b=np.sqrt(smoothed.rate_std_b**2 + solution.added_rate_var),
+        ),
     )
 
 
@@ -111,7 +144,7 @@ def _contenders(series: Series, noise: Noise, floor: float, inertia, progress) -
     kinds = (False,) if series.gyro_b.any() else (False, True)
     for k, rigid in enumerate(kinds):
         progress("first guess", k, len(kinds), "rigid body" if rigid else "random walk")
-        starts = find_starts(series, floor, inertia=inertia, rigid=rigid) + ([] if rigid else from_roots)
+        starts = ([] if rigid else from_roots) + find_starts(series, floor, inertia=inertia, rigid=rigid)
         tried += len(starts)
         contenders += contend(series, starts, noise, floor)
     progress("first guess", len(kinds), len(kinds), f"{len(contenders)} of {tried} candidates kept")
@@ -247,8 +280,8 @@ def _polished(job: _Polish, series: Series, winner: Contender, values, covarianc
     if constants.values.size == 0:
         return winner, smoothed, constants, winner.log_likelihood
     parts = substeps(series, smoothed.model, smoothed.start)
-    job = replace(job, rows=middle_rows(series, parts))
-    first_row = job.rows.start
+    rows = middle_rows(series, parts)
+    job, first_row = replace(job, rows=rows), rows.start
     start = np.concatenate([smoothed.q_bi[first_row], smoothed.omega_b[first_row]])
     tops = [job.climb(constants, start, smoothed.noise, smoothed.model, None)]
     # a fast spinner shows its calibration and its shape by itself, and its rigid motion is dear to follow

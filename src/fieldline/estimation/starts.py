@@ -51,7 +51,7 @@ def attitude_on_circle(measured_b: np.ndarray, reference_i: np.ndarray, angle: f
     from scipy.spatial.transform import Rotation
 
     b = measured_b / np.linalg.norm(measured_b)
-    shortest, _ = Rotation.align_vectors([reference_i / np.linalg.norm(reference_i)], [b])
+    shortest = Rotation.align_vectors([reference_i / np.linalg.norm(reference_i)], [b])[0]
     return (shortest * Rotation.from_rotvec(angle * b)).as_quat()
 
 
