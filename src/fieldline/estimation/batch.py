@@ -24,6 +24,7 @@ from fieldline.frames.matrices import IDENTITY, matadd, matmul, skew
 from fieldline.frames.vectors import add, put, scale, vec
 
 DIPOLE_STD = 1.0  # [A m2 / kg m2] prior of the residual dipole: 0.02 A m2 on a 3U cubesat
+LARGEST_SHAPE = 20.0  # of a shape number: ratios of second moments beyond 1e12, which no number format bears
 ROBUST_SIGMA = 4.0
 ZERO9 = (0.0,) * 9
 
@@ -106,6 +107,8 @@ def fit_window(series: Series, start: Motion, noise_tesla: float, *, iterations:
     now, damping = replace(start, cost=_cost(start, data, predicted), samples=int(series.used.sum())), 1e-3
     for _ in range(iterations):
         normal, gradient = _normal_equations(now, data, predicted, slopes, jacobian)
+        if not (np.isfinite(normal).all() and np.isfinite(gradient).all()):
+            break  # slopes carried across a long gap may overflow where the motion itself does not
         better = None
         for _ in range(6):
             step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), gradient)
@@ -151,6 +154,8 @@ def _predict(motion: Motion, data, predicted, slopes) -> None:
 def _cost(motion: Motion, data, predicted) -> float:
     """Robust cost of a motion; infinite where it runs away."""
     series, noise = data
+    if motion.shape is not None and not np.abs(motion.shape).max() < LARGEST_SHAPE:
+        return np.inf
     _predict(motion, data, predicted, np.empty((0, 3, 6)))
     square = ((series.field_b - predicted)[series.used] ** 2).sum(axis=1) / noise**2
     cost = float(_weights(square)[0].sum()) + _prior(motion)

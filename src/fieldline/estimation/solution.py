@@ -30,6 +30,9 @@ from fieldline.estimation.tuning import magnitude_noise, middle_rows, substeps, 
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
 POLISH_ROUNDS = 4
 FINAL_PASSES = 4
+RESTLESS = 1e-5  # [rad/s/sqrt(s)]
+SLOW_TURN = 0.5  # [rad] between samples
+MORE_ANCHORS = 6
 QUIET_ROUNDS = 6
 UNSURE_STRETCH = 2.0
 QUIET_NOISES = (1e-6, 1e-7)  # [rad/s/sqrt(s)]
@@ -82,6 +85,12 @@ def solve(
     noise = Noise(white=floor, coloured=0.5 * floor, coloured_time=SLOW_ERROR_TIME)
     contenders, tried, remarks = _contenders(series, noise, floor, inertia, progress)
     settled = _settled(series, contenders, floor)
+    if _restless(settled[0], series):
+        # a body free of torque looks like this where no start found its shape: look for it from more places
+        starts = find_starts(series, floor, inertia=inertia, rigid=True, anchors=MORE_ANCHORS)
+        tried += len(starts)
+        contenders = sorted(contenders + contend(series, starts, noise, floor), key=lambda c: -c.log_likelihood)
+        settled = _settled(series, contenders, floor)
     progress("refine", 0.4, 1.0, settled[0].candidate.words)
     job = _Polish(series_of=series_of, volume_of=volume_of, floor=floor)
     # a calibration that is unsure judges the rate models only once it has been found with each of them
@@ -107,6 +116,13 @@ def solve(
         series=series,
         core=series,
     )
+
+
+def _restless(contender: Contender, series: Series) -> bool:
+    """Whether the likeliest motion wanders more than a body without control does, at a rate that is cheap to follow."""
+    smoothed = contender.smoothed
+    slow = np.linalg.norm(np.median(smoothed.omega_b, axis=0)) * float(np.median(np.diff(series.seconds))) < SLOW_TURN
+    return bool(slow and smoothed.model.noise > RESTLESS and not series.gyro_b.any())
 
 
 def extend(solution: Solution, series_of: SeriesOf, calibration_values, first_row: int, progress: Progress) -> Solution:

@@ -1,6 +1,6 @@
 """Which candidate the data support: by what it predicts in stretches of the arc that it was not fitted to.
 
-The arc is cut into blocks of 300 s (a third of a knot of the gain; a sixteenth of a shorter arc). Every fifth block is
+The arc, less its gaps, is cut into blocks of 300 s (a third of a knot of the gain; a sixteenth of a shorter arc). Every fifth block is
 held out, five times over, and the loss of its samples, - log Student density, is averaged block by block. A richer
 candidate replaces a simpler one when the block means drop by more than half a per cent of the residuals and a signed-rank
 test over the blocks gives chance less than 1 %: residuals that hang together over minutes thus count as the few blocks they
@@ -84,12 +84,22 @@ def block_numbers(samples: Samples) -> np.ndarray:
     start = 0
     for flight in range(int(samples.flight.max()) + 1):
         inside = samples.flight == flight
-        t = samples.seconds[inside] - samples.seconds[inside][0]
+        t = without_gaps(samples.seconds[inside])
         length = min(BLOCK_S, max(t[-1] * (1.0 + 1e-9), 1e-9) / BLOCKS_AT_LEAST)
         own = (t / length).astype(np.intp)
         numbers[inside] = start + own
         start += int(own[-1]) + 1
     return np.unique(numbers, return_inverse=True)[1]
+
+
+def without_gaps(seconds: np.ndarray) -> np.ndarray:
+    """(n,) [s] from the first sample, gaps longer than a block taken as one step: two passes a day apart are two passes long."""
+    steps = np.diff(seconds)
+    if not steps.size:
+        return np.zeros(len(seconds))
+    usual = float(np.median(steps))
+    longest = max(10.0 * usual, min(BLOCK_S, float(steps.sum()) / BLOCKS_AT_LEAST))
+    return np.concatenate([[0.0], np.cumsum(np.where(steps > longest, usual, steps))])
 
 
 def held_out(one: Fit, samples: Samples, blocks: np.ndarray) -> tuple[np.ndarray, float]:
