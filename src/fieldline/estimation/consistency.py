@@ -50,8 +50,9 @@ def _words(mean: float, lag_one: float, memory: float, count: int) -> str:
         words = f"too pessimistic: residuals are {sigma:.1f} sigma"
     else:
         words = "consistent in size"
+    if memory > LARGEST_MEMORY:
+        independent = f"{count:,} samples tell as much as {count / memory:,.0f} independent ones"
+        return words + f", but residuals repeat with the spin, or drift: {independent}"
     if abs(lag_one) > 0.3:
         return words + f", but residuals remember their neighbours (correlation {lag_one:.2f})"
-    if memory > LARGEST_MEMORY:
-        return words + f", but residuals repeat (with the spin, say): {count:,} samples tell as much as {count / memory:,.0f}"
     return "consistent" if words == "consistent in size" else words
