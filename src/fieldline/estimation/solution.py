@@ -30,6 +30,8 @@ from fieldline.estimation.tuning import magnitude_noise, middle_rows, substeps, 
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
 POLISH_ROUNDS = 4
 FINAL_PASSES = 4
+STEADY_SHARE = 0.02  # of the rate
+STEADY_STD_DEG = 3.0
 RESTLESS = 1e-5  # [rad/s/sqrt(s)]
 SLOW_TURN = 0.5  # [rad] between samples
 MORE_ANCHORS = 6
@@ -159,6 +161,8 @@ def _contenders(series: Series, noise: Noise, floor: float, inertia, progress) -
     tried = 0
     kinds = (False,) if series.gyro_b.any() else (False, True)
     for k, rigid in enumerate(kinds):
+        if rigid and inertia is None and contenders and _steady(max(contenders, key=lambda c: c.log_likelihood)):
+            break
         progress("first guess", k, len(kinds), "rigid body" if rigid else "random walk")
         starts = ([] if rigid else from_roots) + find_starts(series, floor, inertia=inertia, rigid=rigid)
         tried += len(starts)
@@ -170,6 +174,13 @@ def _contenders(series: Series, noise: Noise, floor: float, inertia, progress) -
             "the model's along this orbit in any attitude. Check that orbit, time (UTC) and calibration belong together."
         )
     return sorted(contenders, key=lambda c: -c.log_likelihood), tried, remarks
+
+
+def _steady(contender: Contender) -> bool:
+    """Whether the rate hardly changes: then there is nothing for a rigid body to explain that a random walk does not."""
+    omega, spread = contender.smoothed.omega_b, contender.smoothed.attitude_covariance_b
+    known = np.degrees(np.sqrt(np.median(np.trace(spread, axis1=1, axis2=2)))) < STEADY_STD_DEG
+    return bool(known and np.linalg.norm(omega.std(axis=0)) < STEADY_SHARE * np.linalg.norm(omega.mean(axis=0)))
 
 
 def natanson_starts(series: Series, noise_tesla: float) -> tuple[list[Candidate], list[str]]:
