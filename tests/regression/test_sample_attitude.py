@@ -105,3 +105,7 @@ def test_with_the_gyro_the_result_stays_and_the_gyros_bias_is_found(flown, estim
     assert np.median(turn) < 3.0
     bias = np.degrees(np.median(used["gyro_b"].values - used["omega_bi_b"].values, axis=0))
     assert np.allclose(bias, GYRO_BIAS_DEG_S, atol=1.5)
+
+
+def test_aliases_of_a_fast_spin_are_named(verdict):
+    assert "313.8 deg/s the other way round" in verdict["motion"]["aliases"]

@@ -35,6 +35,7 @@ FEWEST = 30  # usable samples
 CORE_ROWS = 20_000  # of a longer arc: its middle, on which everything but attitude and rate is found
 LARGEST_STRETCH = 3.0  # of the whole arc's uncertainty: half an arc may go astray where the whole one does not
 UNSURE = 0.02  # of the field: a calibration this uncertain is found together with the motion
+ALIAS_TURN_DEG = 15.0  # between samples, from which aliases are named
 USES = ("gyro", *COLUMNS)
 
 
@@ -333,7 +334,7 @@ def _verdict(arc: Arc, solution: Solution, smoothed: Smoothed, judgement: list[d
         "field_model": arc.reference.stamp,
         "candidates": _candidates(solution),
         "candidates_tried": solution.candidates_tried,
-        "motion": _motion(solution),
+        "motion": _motion(solution) | {"aliases": _aliases(solution)},
         "judgement": judgement,
         "warnings": list(arc.reference.orbit.get("warnings", [])),
         "remarks": list(solution.remarks),
@@ -360,6 +361,20 @@ def _motion(solution: Solution) -> dict:
         "inertia_ratio": (3.0 * inertia / np.trace(inertia)).tolist(),
         "dipole_per_inertia_a_kg": [float(v) for v in solution.smoothed.model.dipole],
     }
+
+
+def _aliases(solution: Solution) -> str:
+    """What rates even sampling cannot tell from the one found, in words; empty where the body turns little between samples."""
+    series = solution.series
+    step = float(np.median(np.diff(series.seconds)))
+    spin = float(np.degrees(np.median(np.linalg.norm(solution.smoothed.omega_b + series.gyro_b, axis=1))))
+    if spin * step < ALIAS_TURN_DEG:
+        return ""
+    turn = 360.0 / step
+    return (
+        f"Sampled every {step:g} s, a spin of {spin:.1f} deg/s looks like one of {turn - spin:.1f} deg/s the other way round or "
+        f"{turn + spin:.1f} deg/s; the slowest is taken."
+    )
 
 
 def _recalibration(arc: Arc, solution: Solution) -> dict:

@@ -65,14 +65,17 @@ def noise_matrix(w, body, noise):
 
 
 @njit(cache=True, inline="always")
-def innovation(ref, error, rate, p, measured, reference, noise, coloured):
+def innovation(ref, error, rate, p, measured, reference, noise, coloured, about):
     """Whitened residual, h, gains, S^-1 v, S^-1 and log-likelihood of one vector; beyond the gate R is stretched."""
     q, _, c = ref
     body = to_body(q, reference)
     h = skew(body)
     r = noise_matrix(rate, body, noise)
-    expected = add(add(body, c), add(matvec(h, error[0]), error[2]))
-    residual = sub(measured, expected)
+    residual = sub(measured, body)
+    if coloured:
+        residual = sub(residual, c)
+    if about:
+        residual = sub(residual, add(matvec(h, error[0]), error[2]))
     ga, gr, gc, s = cov.measurement_gain(p, h, r, coloured)
     white = cov.whitened(s, residual)
     nis = dot(white, white)
@@ -184,7 +187,7 @@ def filter_forward(series, first, before, start, offset, prior, noise, model, pa
         if used[k]:
             rate = add(ref[1], vec(series.gyro_b, k))
             whitened, _, ga, gr, gc, v, s_inv, gained = innovation(
-                ref, error, rate, p, vec(series.field_b, k), vec(series.field_i, k), noise, coloured
+                ref, error, rate, p, vec(series.field_b, k), vec(series.field_i, k), noise, coloured, about
             )
             ec = add(error[2], matvec(gc, v)) if coloured else error[2]
             error = (add(error[0], matvec(ga, v)), add(error[1], matvec(gr, v)), ec)
@@ -218,7 +221,7 @@ def smooth_backward(
     """
     seconds, used = series.seconds, series.used
     n = seconds.shape[0]
-    coloured = noise.coloured > 0.0
+    coloured, about = noise.coloured > 0.0, path.shape[0] == n
     va, vr, vc = _row_error(adjoint_v.reshape(1, 9), 0)
     m = cov.load(adjoint_m, 0)
     for k in range(n - 1, -1, -1):
@@ -234,7 +237,7 @@ def smooth_backward(
             step = seconds[k] - (seconds[k - 1] if k > 0 else before)
             ref, error, phi, psi, lam, f, drive = _predicted(ref, error, series, k, step, model, noise, coloured, path)
             p = cov.step_forward(p, phi, psi, lam, f, drive, model.noise, step, coloured)
-        elif path.shape[0] == n:
+        elif about:
             ref = _row_state(path, 0)
         ea, er, ec = cov.times(p_f, va, vr, vc, coloured)
         shift = (sub(error_f[0], ea), sub(error_f[1], er), sub(error_f[2], ec))
@@ -243,7 +246,7 @@ def smooth_backward(
         if used[k]:
             rate = add(ref[1], vec(series.gyro_b, k))
             _, h, ga, gr, gc, v, s_inv, _ = innovation(
-                ref, error, rate, p, vec(series.field_b, k), vec(series.field_i, k), noise, coloured
+                ref, error, rate, p, vec(series.field_b, k), vec(series.field_i, k), noise, coloured, about
             )
             ka, kr, kc = matmul(ga, s_inv), matmul(gr, s_inv), matmul(gc, s_inv)
             g = add(cov.transposed_gain(ka, kr, kc, va, vr, vc, coloured), v)
