@@ -32,7 +32,7 @@ def write_together(files: Sequence[tuple[Path, Callable[[Path], object]]]) -> li
         for path, write in files:
             beside = _beside(path)
             staged.append((beside, path))
-            write(beside)
+            _written(write, beside, path)
             with open(beside, "rb") as written:
                 os.fsync(written.fileno())
         for beside, path in staged:
@@ -43,6 +43,14 @@ def write_together(files: Sequence[tuple[Path, Callable[[Path], object]]]) -> li
         for beside, _ in staged:
             shutil.rmtree(beside.parent, ignore_errors=True)
     return [path for _, path in staged]
+
+
+def _written(write: Callable[[Path], object], beside: Path, path: Path) -> None:
+    """Let `write` fill the file beside; one that itself writes whole names the file's own place when it fails."""
+    try:
+        write(beside)
+    except InputError as error:
+        raise InputError(str(error).replace(str(beside), str(path))) from error
 
 
 def _beside(path: Path) -> Path:

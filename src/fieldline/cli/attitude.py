@@ -101,7 +101,10 @@ def run(job: Job) -> int:
     if job.as_json:
         print(json.dumps(verdict, indent=2))
     elif not job.quiet:
-        print(f"{verdict['sentence']}\n{summary(verdict)}\n{wrote(written)}")
+        from fieldline.report.verdict import doubts
+
+        lines = [verdict["sentence"], summary(verdict), *doubts(verdict), *verdict.get("warnings", []), wrote(written)]
+        print("\n".join(line for line in lines if line))
     return int(verdict.get("exit_code", 0))
 
 

@@ -44,8 +44,13 @@ def report_html(estimate: xarray.Dataset) -> str:
         verdict_panel(verdict) + key_numbers(record),
         [
             ("field", section("field", "Field", drawings(groups["field"]))),
-            ("motion", section("motion", "Motion", drawings(groups["motion"]))),
-            ("residuals", section("residuals", "Residuals", drawings(groups["residuals"]))),
+            ("motion", section("motion", "Motion", chapters.motion_words(verdict), drawings(groups["motion"]))),
+            (
+                "residuals",
+                section(
+                    "residuals", "Residuals", drawings(groups["residuals"]), chapters.noise_words(verdict.get("noise") or {})
+                ),
+            ),
             ("candidates", section("candidates", "Candidates", chapters.candidates_table(verdict.get("candidates", [])))),
             (
                 "calibration",
@@ -67,7 +72,9 @@ def report_html(estimate: xarray.Dataset) -> str:
                     "provenance",
                     "Provenance",
                     chapters.provenance_table(
-                        verdict.get("settings", {}), record.provenance, [verdict.get("orbit", {}), verdict.get("field_model", {})]
+                        verdict.get("settings", {}),
+                        {key: value for key, value in record.provenance.items() if key != "noise"},
+                        [verdict.get("orbit", {}), verdict.get("field_model", {})],
                     ),
                 ),
             ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import floor, isfinite, log10
 from typing import Any
 
 from fieldline.report.markup import facts, flat, number, sentences, table, text
@@ -10,6 +11,15 @@ from fieldline.report.theme import AXES
 
 KEPT = '<span class="good">kept</span>'
 DROPPED = '<span class="poor">dropped</span>'
+CANDIDATE_WORDS = (
+    "A candidate is named after its first motion: what moved it, how fast it turned, and its misfit over its first rows (1: as "
+    "the noise has it). The log-likelihood counts every sample; the last column counts those that repeat each other once."
+)
+REFINED_WORDS = (
+    "Once the attitude is known, direction calibrates too. The estimate uses these values; the gain is refined with them. "
+    "What moved by more than a few sigma is a hint that one of the two models is wrong."
+)
+SCALES = (("_tesla_s", 1e9, "nT/s"), ("_tesla", 1e6, "µT"))  # ending of a parameter's name, factor, unit
 
 
 def candidates_table(candidates: list[dict[str, Any]]) -> str:
@@ -25,7 +35,7 @@ def candidates_table(candidates: list[dict[str, Any]]) -> str:
         return [text(one.get("name", "")), KEPT if one.get("kept") else DROPPED, below, rms, text(one.get("words", ""))]
 
     heads = ("candidate", "", "log-likelihood below the best", "residual [nT]", "why")
-    return table(heads, map(row, candidates), "numbers")
+    return table(heads, map(row, candidates), "numbers") + f"<p><small>{CANDIDATE_WORDS}</small></p>"
 
 
 def calibration_tables(calibration: dict[str, Any]) -> str:
@@ -35,16 +45,35 @@ def calibration_tables(calibration: dict[str, Any]) -> str:
         parts.append(_bias_and_matrix(calibration))
     others = [p for p in calibration.get("parameters", []) if not p["name"].startswith(("bias", "matrix", "gain_"))]
     if others:
-        parts.append(
-            table(
-                ("parameter", "value", "1σ"),
-                [[text(p["name"]), number(p["value"]), number(p["std"], 2)] for p in others],
-                "numbers",
-            )
-        )
+        parts.append(table(("parameter", "value", "1σ"), [_parameter(p, ("value",)) for p in others], "numbers"))
+    refined = [p for p in calibration.get("refined") or [] if not p["name"].startswith("gain_")]
+    if refined:
+        heads = ("parameter", "by magnitude alone", "with the attitude", "1σ")
+        rows = [_parameter(p, ("by_magnitude", "value")) for p in refined]
+        parts.append("<h3>Refined with the attitude</h3>" + f"<p>{REFINED_WORDS}</p>" + table(heads, rows, "numbers"))
     if calibration.get("candidates"):
         parts.append("<h3>Models that were tried</h3>" + _models(calibration["candidates"]))
     return "".join(parts)
+
+
+def _parameter(one: dict[str, Any], keys: Sequence[str]) -> list[str]:
+    """Name with its unit, the values of these keys, and the uncertainty, to the digits that it leaves."""
+    name, factor, unit = one["name"], 1.0, ""
+    for ending, scale, shown in SCALES:
+        if name.endswith(ending):
+            name, factor, unit = name.removesuffix(ending), scale, f" [{shown}]"
+            break
+    std = one.get("std")
+    values = [_to_digits_of(factor * one[key], None if std is None else factor * std) for key in keys]
+    return [text(name.replace("_", " ")) + unit, *values, "–" if std is None else number(factor * std, 2)]
+
+
+def _to_digits_of(value: float, std: float | None) -> str:
+    """A value to two digits of its uncertainty."""
+    if not std or not isfinite(std):
+        return number(value)
+    decimals = max(0, min(12, 1 - floor(log10(std))))
+    return f"{value:.{decimals}f}".replace("-", "−")
 
 
 def _bias_and_matrix(calibration: dict[str, Any]) -> str:
@@ -60,7 +89,7 @@ def _bias_and_matrix(calibration: dict[str, Any]) -> str:
         spread = "" if bias_std[k] is None else f" <small>± {number(bias_std[k], 2)}</small>"
         rows.append([axis, f"{bias[k]:.3f}".replace("-", "−") + spread, *entries])
     heads = ("", "bias [µT]", *(f"matrix, {a}" for a in AXES if matrix))
-    return table(heads, rows, "numbers")
+    return table(heads, rows, "matrix")
 
 
 def _models(candidates: list[dict[str, Any]]) -> str:
@@ -72,6 +101,29 @@ def _models(candidates: list[dict[str, Any]]) -> str:
         return [text(one.get("model", "")), mark, text(one.get("parameters")), *cells, text(one.get("why", ""))]
 
     return table(("model", "", "parameters", "left [nT]", "left where not fitted [nT]", "why"), map(row, candidates), "numbers")
+
+
+def motion_words(verdict: dict[str, Any]) -> str:
+    """Which motion was assumed, with the inertia's ratios where they were found, and what the search for it remarked."""
+    motion = verdict.get("motion") or {}
+    words = f"<p>{text(str(motion.get('model', '')).capitalize())}: {text(motion['words'])}.</p>" if motion.get("words") else ""
+    ratio = motion.get("inertia_ratio")
+    if ratio:
+        rows = [[axis, *(number(float(one), 3) for one in row)] for axis, row in zip(AXES, ratio, strict=True)]
+        words += table(("inertia, mean 1", *AXES), rows, "numbers")
+    return words + sentences(verdict.get("remarks") or [])
+
+
+def noise_words(noise: dict[str, Any]) -> str:
+    """The noise that the data were found to have."""
+    names = (
+        ("white_nt", "white noise of an axis", "nT"),
+        ("slow_nt", "slow error of an axis", "nT"),
+        ("slow_time_s", "memory of the slow error", "s"),
+        ("rate_noise_rad_s15", "wandering of the rate", "rad/s/√s"),
+    )
+    pairs = [(words, f"{number(float(noise[key]), 3)} {unit}") for key, words, unit in names if noise.get(key) is not None]
+    return "<h3>Noise, found from the data</h3>" + facts(pairs) if pairs else ""
 
 
 def judgement_table(judgement: list[dict[str, Any]]) -> str:

@@ -26,7 +26,25 @@ def standing(verdict: dict[str, Any]) -> str:
 def verdict_panel(verdict: dict[str, Any]) -> str:
     """The sentence, large, in the colour of its standing, with the warnings under it."""
     state = standing(verdict)
-    return panel(state, WORDS[state], verdict.get("sentence", ""), verdict.get("warnings", []))
+    sentence = str(verdict.get("sentence", ""))
+    if sentence.startswith(f"{WORDS['usable']}: "):  # the state above says so
+        sentence = sentence.removeprefix(f"{WORDS['usable']}: ")
+        sentence = sentence[:1].upper() + sentence[1:]
+    return panel(state, WORDS[state], sentence, [*doubts(verdict), *verdict.get("warnings", [])])
+
+
+def doubts(verdict: dict[str, Any]) -> list[str]:
+    """A sentence for each judge that failed and for residuals that do not fit their uncertainty."""
+    if not verdict.get("usable", False):
+        return []
+    found = []
+    for one in verdict.get("judgement", []):
+        if one.get("passed") is False:
+            value = "" if one.get("value") is None else f" {float(one['value']):.3g} {one.get('unit', '')}".rstrip()
+            words = f" ({one['words']})" if one.get("words") else ""
+            found.append(f"Doubt: {one.get('what', 'a judge')}:{value}{words}")
+    words = str(verdict.get("consistency", {}).get("words", "consistent"))
+    return found if words.startswith("consistent") else [*found, f"Doubt: {words}"]
 
 
 def panel(state: str, words: str, sentence: str, lines: Sequence[str] = ()) -> str:

@@ -24,6 +24,7 @@ from fieldline.files import write_whole
 from fieldline.telemetry.delimited import iso_text, write_rows
 
 ORIGINATOR = "FIELDLINE"
+IN_ASCII = str.maketrans({"°": " deg", "σ": " sigma", "µ": "u", "μ": "u", "−": "-", "·": ",", "±": "+-", "…": "..."})
 
 
 def write_attitude_aem(dataset, path: str | Path, *, object_name: str = "", object_id: str = "") -> Path:
@@ -73,7 +74,7 @@ def _head(object_name: str, object_id: str, stamps: np.ndarray, verdict: str) ->
         f"ORIGINATOR = {ORIGINATOR}",
         "",
         "META_START",
-        *(f"COMMENT {' '.join(comment.split())[:240]}" for comment in comments if comment),
+        *(f"COMMENT {' '.join(comment.translate(IN_ASCII).split())[:240]}" for comment in comments if comment),
         f"OBJECT_NAME = {object_name}",
         f"OBJECT_ID = {object_id}",
         "CENTER_NAME = EARTH",

@@ -19,7 +19,7 @@ def write_attitude_netcdf(dataset, path: str | Path) -> Path:
         try:
             dataset.to_netcdf(beside, engine="netcdf4", format="NETCDF4", encoding=_encoding(dataset))
         except RuntimeError as error:  # the HDF library reports a full disk as "HDF error"
-            raise OSError(errno.EIO, f"the NetCDF library stopped ({error}); is the disk full?") from error
+            raise OSError(errno.EIO, f"the NetCDF library stopped ({error}), as it does when the disk is full") from error
 
     return write_whole(path, write)
 

@@ -202,6 +202,31 @@ def test_bad_commands_end_with_2_and_say_why(monkeypatch, tmp_path, capsys, argu
     assert visible(tmp_path) == []
 
 
+def test_doubts_are_told_on_the_terminal(asked, monkeypatch, capsys, make_estimate):
+    replace_estimator(monkeypatch, make_estimate(samples=60))
+    assert attitude("--out", "flight") == 0
+    said = capsys.readouterr().out
+    assert "Doubt: sun-sensor hits on -x, -z: 91.2 %" in said
+    assert "the sun sensors disagree on 9 % of the samples" in said
+
+
+def test_a_full_disk_is_told_by_the_name_that_was_asked_for(asked, monkeypatch, tmp_path, capsys):
+    import xarray
+
+    def full(*_, **__):
+        raise RuntimeError("NetCDF: HDF error")
+
+    (tmp_path / "flight.nc").write_text("old")
+    monkeypatch.setattr(xarray.Dataset, "to_netcdf", full)
+    assert attitude("--out", "flight", "--quiet") == 2
+    said = capsys.readouterr().err
+    assert 'could not write "flight.nc"' in said
+    assert "disk is full" in said
+    assert "?." not in said
+    assert visible(tmp_path) == ["flight.nc"]
+    assert (tmp_path / "flight.nc").read_text() == "old"
+
+
 def test_version(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.startswith("fieldline 0.")

@@ -1,5 +1,6 @@
 """The report as its reader meets it."""
 
+import json
 import re
 import time
 
@@ -27,7 +28,7 @@ def test_the_page_needs_no_network(html):
 
 def test_the_verdict_comes_first(html):
     body = html[html.index("<main>") :]
-    assert body.index("attitude within 2 to 3 deg") < body.index("<table") < body.index("<figure")
+    assert body.index("Attitude within 2 to 3 deg") < body.index("<table") < body.index("<figure")
 
 
 def test_every_chapter_is_there(html):
@@ -65,6 +66,32 @@ def test_colours_of_the_verdict(make_estimate):
     assert state() == "doubtful"  # a judge failed
     assert state(extras=False) == "usable"
     assert state(usable=False) == "refused"
+
+
+def test_what_gives_doubt_is_said_at_the_head(make_estimate):
+    html = report_html(make_estimate(samples=60))
+    head = html[html.index('class="verdict') : html.index("<table")]
+    assert "Doubt: sun-sensor hits on -x, -z: 91.2 % (5,012 of 5,494 samples agree)" in head
+    assert "Doubt" not in report_html(make_estimate(samples=60, extras=False))
+
+
+def test_refined_constants_stand_beside_those_by_magnitude(plain_estimate):
+    estimate = plain_estimate.copy()
+    verdict = json.loads(estimate.attrs["verdict_json"])
+    verdict["calibration"]["refined"] = [
+        {"name": "bias_x_tesla", "value": 1.00423e-4, "std": 1.3e-7, "by_magnitude": 9.9803e-5},
+        {"name": "drift_x_tesla_s", "value": 2.5e-9, "std": 2e-10, "by_magnitude": 2.1e-9},
+        {"name": "gain_0", "value": 0.01, "std": 0.001, "by_magnitude": 0.012},
+    ]
+    verdict["motion"] = {"model": "rigid body", "words": "inertia found", "inertia_ratio": np.diag([0.5, 1.0, 1.5]).tolist()}
+    verdict["noise"] = {"white_nt": 392.0, "slow_nt": None}
+    estimate.attrs["verdict_json"] = json.dumps(verdict)
+    html = report_html(estimate)
+    assert "<td>bias x [µT]</td><td>99.80</td><td>100.42</td><td>0.13</td>" in html
+    assert "<td>drift x [nT/s]</td><td>2.10</td><td>2.50</td><td>0.2</td>" in html
+    assert "gain 0" not in html
+    assert "Rigid body: inertia found." in html
+    assert "392 nT" in html
 
 
 def test_without_judges_there_is_no_judgement(plain_estimate):

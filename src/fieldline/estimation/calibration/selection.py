@@ -1,10 +1,10 @@
 """Which candidate the data support: by what it predicts in stretches of the arc that it was not fitted to.
 
-The arc, less its gaps, is cut into blocks of 300 s (a third of a knot of the gain; a sixteenth of a shorter arc). Every fifth block is
-held out, five times over, and the loss of its samples, - log Student density, is averaged block by block. A richer
-candidate replaces a simpler one when the block means drop by more than half a per cent of the residuals and a signed-rank
-test over the blocks gives chance less than 1 %: residuals that hang together over minutes thus count as the few blocks they
-are. Besides, whatever predicts, a candidate is refused when
+The arc, less its gaps, is cut into blocks of 300 s (a third of a knot of the gain; a sixteenth of a shorter arc). Every
+fifth block is held out, five times over, and the loss of its samples, - log Student density, is averaged block by block.
+A richer candidate replaces a simpler one when the block means drop by more than half a per cent of the residuals and a
+signed-rank test over the blocks gives chance less than 1 %: residuals that hang together over minutes thus count as the
+few blocks they are. Besides, whatever predicts, a candidate is refused when
 
 - its matrix or gain leaves physical bounds (eigenvalues 0.5 to 2, gain within 20 %),
 - the field that it gives would be uncertain by more than 15 % of itself (directions that the readings never took) and by more
