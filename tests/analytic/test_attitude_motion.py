@@ -43,6 +43,15 @@ def test_a_gyro_carries_the_random_walk():
     assert np.allclose(rides, alone, atol=1e-15)
 
 
+def test_a_commanded_dipole_acts_as_a_residual_one():
+    q, w = start(6)
+    moment, field_i = (0.3, -0.1, 0.2), (2e-5, -3e-5, 1e-5)
+    commanded = propagate(q, w, moment, field_i, ZERO, 6.0, rigid_body(INERTIA, 0.0))
+    residual = propagate(q, w, ZERO, field_i, ZERO, 6.0, rigid_body(INERTIA, 0.0, dipole=moment))
+    assert commanded[0] == residual[0] and commanded[1] == residual[1]
+    assert commanded[1] != propagate(q, w, ZERO, field_i, ZERO, 6.0, rigid_body(INERTIA, 0.0))[1]
+
+
 @pytest.mark.parametrize("h", [2.0, -5.0, 20.0])
 def test_rigid_body_follows_eulers_equations(h):
     """Against SciPy's DOP853, with residual dipole and gravity gradient held along the step as the kernel holds them."""

@@ -60,6 +60,30 @@ def test_a_known_inertia_is_used_and_kept():
     assert np.median(attitude_error_deg(flight, estimate)) < 0.3
 
 
+def test_a_dipole_command_is_a_known_torque_where_the_inertia_is_given():
+    """A steady 0.27 A m2 turns a 3U cubesat about; told of it, the filter finds a body at peace."""
+    flight = tumbler(7)
+    reference = reference_along_orbit(flight.telemetry.time_utc, orbit())
+    inertia, strong = inertia_of_tumbler(7), (0.2, -0.1, 0.15)
+    driven = fly_free(
+        reference,
+        seed=7,
+        omega0_deg_s=(0.4, -0.3, 0.5),
+        inertia_kg_m2=inertia,
+        dipole_a_m2=strong,
+        magnetometer=Magnetometer(noise_std_tesla=1e-7),
+    )
+    told = dataclasses.replace(driven.telemetry, dipole_command_b=np.tile(strong, (len(driven.telemetry), 1)))
+    estimate = fl.estimate_attitude(
+        told, orbit(), degree=FILTER_DEGREE, calibration="none", use=("dipole",), inertia_kg_m2=inertia
+    )
+    motion = verdict_of(estimate)["motion"]
+    assert motion["model"] == "rigid body"
+    # what is left for a residual dipole is nothing
+    assert np.abs(motion["residual_dipole_a_m2"]).max() < 0.01
+    assert np.median(attitude_error_deg(driven, estimate)) < 0.5
+
+
 def inertia_of_tumbler(seed):
     """The inertia that `tests_support.tumbler` drew for a seed."""
     rng = np.random.default_rng(seed + 100)

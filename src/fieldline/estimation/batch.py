@@ -17,11 +17,11 @@ import numpy as np
 from numba import njit
 
 from fieldline.estimation.inertia import SHAPE_STD, inertia_of
-from fieldline.estimation.motion import RateModel, propagate, random_walk, rigid_body
+from fieldline.estimation.motion import RateModel, propagate, random_walk, rigid_body, told
 from fieldline.estimation.series import Series
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit, to_body
 from fieldline.frames.matrices import IDENTITY, matadd, matmul, skew
-from fieldline.frames.vectors import add, put, scale, vec
+from fieldline.frames.vectors import put, vec
 
 DIPOLE_STD = 1.0  # [A m2 / kg m2] prior of the residual dipole: 0.02 A m2 on a 3U cubesat
 LARGEST_SHAPE = 20.0  # of a shape number: ratios of second moments beyond 1e12, which no number format bears
@@ -39,8 +39,8 @@ def _fill(series, anchor, stop, step, q, w, model, predicted, slopes):
     while k != stop:
         if k != anchor:
             h = seconds[k] - seconds[k - step]
-            gyro = scale(0.5, add(vec(series.gyro_b, k - step), vec(series.gyro_b, k)))
-            q, w, f, g, j = propagate(q, w, gyro, vec(field_i, k - step), vec(pull_i, k - step), h, model)
+            known = told(series, k - step, k, model)
+            q, w, f, g, j = propagate(q, w, known, vec(field_i, k - step), vec(pull_i, k - step), h, model)
             psi = matadd(matmul(f, psi), matmul(g, lam))
             phi = matmul(f, phi)
             lam = matmul(j, lam)

@@ -48,6 +48,7 @@ class Arc:
     calibration: Calibration
     columns: dict
     gyro_b: np.ndarray | None
+    moment_b: np.ndarray | None = None
 
     def field_b(self, values: np.ndarray) -> np.ndarray:
         """(n, 3) [T] the telemetry calibrated with other numbers."""
@@ -66,6 +67,7 @@ class Arc:
             self.reference.position_i,
             self.telemetry.usable,
             self.gyro_b,
+            self.moment_b,
         )
 
     def volume(self, values: np.ndarray, rows: slice) -> float:
@@ -92,6 +94,7 @@ class Arc:
             reference=self.reference.part(rows),
             columns=self._columns_at(rows),
             gyro_b=None if self.gyro_b is None else self.gyro_b[rows],
+            moment_b=None if self.moment_b is None else self.moment_b[rows],
         )
         return core, rows
 
@@ -128,7 +131,8 @@ def estimate_attitude(
     calibration : "auto", "none", "bias", "full", or a Calibration; whatever is fitted by magnitude is refined with the
         attitude, "none" and a given Calibration are left as they are.
     use : columns besides the magnetometer that may be used: "gyro" (the rate's random walk becomes the gyro's error),
-        "temperature", "dipole", "current" (in the calibration).
+        "temperature", "dipole", "current" (in the calibration; a dipole command is also the torque of a body whose inertia is
+        given).
     inertia_kg_m2 : three principal moments about body axes or a (3, 3) matrix; without it both a wandering rate and a rigid
         body of unknown shape are tried.      progress(stage, done, total, words).      seed : of every random draw.
 
@@ -150,6 +154,8 @@ def estimate_attitude(
     arc, free = _calibrated(telemetry, reference, calibration, use, report)
     refuse_magnitude(magnitude_noise(arc.series(None)), float(np.median(reference.magnitude)))
     inertia = None if inertia_kg_m2 is None else np.reshape(as_inertia9(inertia_kg_m2)[0], (3, 3))
+    if inertia is not None and "dipole" in use:
+        arc = dataclasses.replace(arc, moment_b=telemetry.dipole_command_b)
     values, spread = (arc.calibration.values, arc.calibration.covariance) if free else (None, None)
     core, rows = arc.core()
     solution = solve(
@@ -359,7 +365,8 @@ def _motion(solution: Solution) -> dict:
         "words": "Euler's equations with gravity gradient and a residual dipole"
         + ("; inertia ratios found from the data" if body.shape else "; inertia as given"),
         "inertia_ratio": (3.0 * inertia / np.trace(inertia)).tolist(),
-        "dipole_per_inertia_a_kg": [float(v) for v in solution.smoothed.model.dipole],
+        # the inertia's scale is known where it was given, and 1 kg m2 in the mean where only its ratios were found
+        ("dipole_per_inertia_a_kg" if body.shape else "residual_dipole_a_m2"): [float(v) for v in solution.smoothed.model.dipole],
     }
 
 

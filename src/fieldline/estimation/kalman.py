@@ -35,7 +35,7 @@ import numpy as np
 from numba import njit
 
 from fieldline.estimation import covariance as cov
-from fieldline.estimation.motion import propagate
+from fieldline.estimation.motion import propagate, told
 from fieldline.frames.attitude import quat_conj, quat_exp, quat_mul, quat_unit, rotation_vector, to_body
 from fieldline.frames.matrices import determinant, matadd, matmul, matscale, matvec, skew
 from fieldline.frames.vectors import add, cross, dot, put, scale, sub, vec
@@ -143,9 +143,8 @@ def _predicted(ref, error, series, k, step, model, noise, coloured, path):
     The environment of a step is that of the row before it, where there is one.
     """
     j = max(k - 1, 0)
-    # a gyro reads at the samples: the trapezium between them
-    gyro = scale(0.5, add(vec(series.gyro_b, j), vec(series.gyro_b, k)))
-    q, w, phi, psi, lam = propagate(ref[0], ref[1], gyro, vec(series.field_i, j), vec(series.pull_i, j), step, model)
+    known = told(series, j, k, model)
+    q, w, phi, psi, lam = propagate(ref[0], ref[1], known, vec(series.field_i, j), vec(series.pull_i, j), step, model)
     f, drive = _fade(step, noise, coloured)
     moved = (q, w, scale(f, ref[2]))
     if path.shape[0] == 0:

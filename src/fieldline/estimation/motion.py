@@ -1,7 +1,7 @@
 """How attitude and rate move between two samples, with their derivatives: the filter's model of the satellite.
 
     q+ = q exp(theta / 2)                    e+  = Phi e + Psi dw                                       (1)
-    w+ = w             (random walk)         dw+ = dw        (on a gyro's rate u: the body turns by u + w)
+    w+ = w             (random walk)         dw+ = dw        (on a gyro's rate: the body turns by it and w)
     w+ = Euler's       (rigid body)          dw+ = Lam dw
 
 e is the error's rotation vector in body axes, q_true = q exp(e / 2). For a constant rate Phi = A(exp(w h / 2)) and
@@ -23,7 +23,7 @@ from numba import njit
 
 from fieldline.frames.attitude import dcm, quat_exp, quat_mul, quat_unit, to_body
 from fieldline.frames.matrices import IDENTITY, matadd, matmul, matscale, matsub, matvec, skew
-from fieldline.frames.vectors import add, cross, norm, scale
+from fieldline.frames.vectors import add, cross, norm, scale, vec
 from fieldline.mechanics.rigid_body import euler_rate, rate_step, turn
 
 NO_DIPOLE = (0.0, 0.0, 0.0)
@@ -71,11 +71,25 @@ def rate_jacobian(w, model):
     return matmul(model.inertia_inv, matsub(skew(momentum), matmul(skew(w), model.inertia)))
 
 
+@njit(cache=True, inline="always")
+def told(series, j, k, model):
+    """What telemetry tells of the motion from row j to row k: see `propagate`."""
+    if model.rigid:
+        # a command is held until the next one
+        return vec(series.moment_b, min(j, k))
+    # a gyro reads at the samples: the trapezium between them
+    return scale(0.5, add(vec(series.gyro_b, j), vec(series.gyro_b, k)))
+
+
 @njit(cache=True)
-def propagate(q, w, gyro, field_i, pull_i, h, model):
-    """q, w after h [s] (negative runs backwards) with Phi, Psi, Lam of (1); gyro is u, field and pull feed the torques."""
+def propagate(q, w, known, field_i, pull_i, h, model):
+    """q, w after h [s] (negative runs backwards) with Phi, Psi, Lam of (1); field and pull feed the torques.
+
+    known: what telemetry tells of the motion, body axes: a gyro's rate [rad/s] under a random walk, a commanded dipole (over
+    the inertia's scale) [A m2] in a rigid body; zeros where nothing is told.
+    """
     if not model.rigid:
-        half = quat_exp(scale(0.5 * h, add(w, gyro)))
+        half = quat_exp(scale(0.5 * h, add(w, known)))
         full = quat_mul(half, half)
         # Simpson's rule on A(exp(w s)): good to (w h)^4 / 2880, 1e-4 at 46 deg a step, ample for a covariance
         psi = matscale(h / 6.0, matadd(matadd(IDENTITY, matscale(4.0, dcm(half))), dcm(full)))
@@ -86,16 +100,16 @@ def propagate(q, w, gyro, field_i, pull_i, h, model):
     phi, psi, lam = IDENTITY, ZERO9, IDENTITY
     for _ in range(parts):
         # torque at the substep's middle: at its start it would trail the body by half a substep
-        torque = outer_torque(quat_mul(q, quat_exp(scale(0.5 * step, w))), field_i, pull_i, model)
+        torque = outer_torque(quat_mul(q, quat_exp(scale(0.5 * step, w))), add(model.dipole, known), field_i, pull_i, model)
         q, w, phi, psi, lam = _rigid_substep(q, w, torque, phi, psi, lam, step, model)
     return quat_unit(q), w, phi, psi, lam
 
 
 @njit(cache=True)
-def outer_torque(q, field_i, pull_i, model):
-    """Torque over the inertia's scale: residual dipole and gravity gradient."""
+def outer_torque(q, dipole, field_i, pull_i, model):
+    """Torque over the inertia's scale: residual and commanded dipole, and gravity gradient."""
     pull_b = to_body(q, pull_i)
-    return add(cross(model.dipole, to_body(q, field_i)), cross(pull_b, matvec(model.inertia, pull_b)))
+    return add(cross(dipole, to_body(q, field_i)), cross(pull_b, matvec(model.inertia, pull_b)))
 
 
 @njit(cache=True)

@@ -18,6 +18,7 @@ class Series(NamedTuple):
     """seconds (n,), field_b (n, 3) [T] measured, field_i (n, 3) [T] reference, pull_i (n, 3) [1/s], used (n,) bool.
 
     gyro_b (n, 3) [rad/s]: a gyro's rate that the random walk rides on (then the walk is the gyro's error), else zeros.
+    moment_b (n, 3) [A m2]: a commanded dipole whose torque a rigid body of known inertia [kg m2] feels, else zeros.
     """
 
     seconds: np.ndarray
@@ -26,9 +27,10 @@ class Series(NamedTuple):
     pull_i: np.ndarray
     used: np.ndarray
     gyro_b: np.ndarray
+    moment_b: np.ndarray
 
 
-def make_series(seconds, field_b, field_i, position_i, used, gyro_b=None) -> Series:
+def make_series(seconds, field_b, field_i, position_i, used, gyro_b=None, moment_b=None) -> Series:
     """The record with (1), contiguous; samples that are not finite are not used (and hold zeros, not NaN)."""
     field_b = np.asarray(field_b, dtype=float)
     finite = np.isfinite(field_b).all(axis=1)
@@ -40,8 +42,14 @@ def make_series(seconds, field_b, field_i, position_i, used, gyro_b=None) -> Ser
         np.ascontiguousarray(field_i, dtype=float),
         np.ascontiguousarray(pull_i),
         np.ascontiguousarray(used & finite),
-        np.zeros_like(field_b) if gyro_b is None else np.ascontiguousarray(np.nan_to_num(gyro_b), dtype=float),
+        _told(gyro_b, field_b),
+        _told(moment_b, field_b),
     )
+
+
+def _told(column, like: np.ndarray) -> np.ndarray:
+    """A column of telemetry, contiguous, zeros where it is missing or holds no number."""
+    return np.zeros_like(like) if column is None else np.ascontiguousarray(np.nan_to_num(column), dtype=float)
 
 
 def part(series: Series, rows) -> Series:
