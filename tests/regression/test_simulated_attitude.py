@@ -118,6 +118,26 @@ def test_a_dirty_satellite_held_earth_pointing(seed):
     assert verdict_of(estimate)["motion"]["model"] == "random walk"
 
 
+@pytest.mark.parametrize(("count", "limit_deg"), [(445, 0.3), (241, 0.5), (121, 1.5)])
+def test_coarse_digits_of_1990(count, limit_deg):
+    """The Earth Radiation Budget Satellite's magnetometer: steps of 6.44 mG, 8 s apart, over 59, 32 and 16 minutes.
+
+    Three such samples leave 7 to 13 deg (Natanson 1990); the bound of the data is 0.04, 0.07 and 0.37 deg.
+    """
+    reference = reference_along_orbit(times_utc(count, 8.0), orbit())
+    flight = fly_free(
+        reference,
+        seed=1,
+        omega0_deg_s=(-0.018, 0.049, -0.034),
+        inertia_kg_m2=(1.0, 1.0, 1.0),
+        gravity_gradient=False,
+        magnetometer=Magnetometer(quantum_tesla=6.44e-7),
+    )
+    estimate = estimate_of(flight, calibration="none")
+    assert np.sqrt(np.mean(attitude_error_deg(flight, estimate) ** 2)) < limit_deg
+    assert nees(flight, estimate) < 2.0
+
+
 def test_a_fast_spinner_sampled_once_a_second():
     """60 deg between samples, time stamps rounded to whole seconds, noise of 0.5 microtesla."""
     reference = reference_along_orbit(times_utc(3000, 1.0), orbit())
