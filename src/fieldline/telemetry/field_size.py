@@ -19,6 +19,7 @@ from fieldline.telemetry.quality import FILL_BEYOND
 SIZE_TESLA = (1.0e-5, 7.0e-4)  # the 95 % quantile of the raw size
 SPREAD_MAX_TESLA = 1.8e-4  # the 95 % quantile of the distance from the median
 AXES_RATIO, AXES_SAMPLES = 300.0, 100  # noise alone is more than a 300th of the field
+ROWS_RATIO, ROWS_SHARE, ROWS_DISTINCT = 50.0, 0.05, 10  # a step in the sorted sizes that no field in orbit and no bias makes
 _TYPICAL_SPREAD = 3.5e-5
 _UNITS = (("nT", 1e-9), ("uT", 1e-6), ("mG", 1e-7), ("G", 1e-4), ("mT", 1e-3), ("T", 1.0))
 
@@ -62,6 +63,7 @@ def check_size(path, columns: Sequence[Column], numbers: np.ndarray, factor: flo
         raise _question(path, columns, numbers)
     if not stated:
         _check_axes(path, columns, numbers)
+        _check_rows(path, columns, numbers)
     size, spread = (value * factor for value in sizes(numbers))
     if is_plausible(size, spread):
         return []
@@ -89,3 +91,26 @@ def _check_axes(path, columns: Sequence[Column], numbers: np.ndarray) -> None:
             f'"{path}": {columns[small].name} reads {reach[large] / max(reach[small], 1e-300):.3g} times less than '
             f"{columns[large].name}. Is it in another unit, or unread? Correct it, or state the unit of all three with --unit."
         )
+
+
+def _check_rows(path, columns: Sequence[Column], numbers: np.ndarray) -> None:
+    """Ask about rows that read tens of times less than the others: two units in one file. Repeated fill values are none."""
+    rows = np.flatnonzero((np.abs(numbers) < FILL_BEYOND).all(axis=1) & numbers.any(axis=1))
+    if len(rows) < AXES_SAMPLES:
+        return
+    size = np.linalg.norm(numbers[rows], axis=1)
+    middle = np.sort(size)[int(ROWS_SHARE * len(size)) : len(size) - int(ROWS_SHARE * len(size))]
+    step = middle[1:] / middle[:-1]
+    at = int(np.argmax(step))
+    if step[at] < ROWS_RATIO:
+        return
+    small = size < np.sqrt(middle[at] * middle[at + 1])
+    if min(len(np.unique(numbers[rows[part]], axis=0)) for part in (small, ~small)) < ROWS_DISTINCT:
+        return
+    change = rows[np.flatnonzero(small != small[0])[0]] + 1
+    times = np.median(size[~small]) / np.median(size[small])
+    raise InputError(
+        f'"{path}": {", ".join(column.name for column in columns)} read about {times:.2g} times less in {int(small.sum()):,} of '
+        f"{len(rows):,} rows than in the others; the first change is at row {change:,}. Two units in one file? Bring "
+        "all rows to one, or split the file there."
+    )

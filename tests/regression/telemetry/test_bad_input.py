@@ -109,6 +109,22 @@ def test_mixed_units_that_no_name_tells(tmp_path):
     refuse(write(tmp_path, [LINES[0], *rows]), "mag_z_nT reads .* times less than mag_x_nT. Is it in another unit")
 
 
+def test_units_that_change_from_row_to_row(tmp_path):
+    rows = list(LINES[1:])
+    for k in range(150, 250):
+        cells = rows[k].split(",")
+        rows[k] = ",".join([*cells[:4], *(f"{float(cell) * 1e-3:.6g}" for cell in cells[4:7]), *cells[7:]])
+    refuse(write(tmp_path, [LINES[0], *rows]), "times less in 100 of 399 rows .* at row 151. Two units in one file")
+
+
+def test_fill_values_are_no_second_unit(tmp_path):
+    rows = list(LINES[1:])
+    for k in range(100, 160):
+        cells = rows[k].split(",")
+        rows[k] = ",".join([*cells[:4], "-999", "-999", "-999", *cells[7:]])
+    assert read_telemetry(write(tmp_path, [LINES[0], *rows])).usable.sum() <= 339
+
+
 def test_a_clock_coarser_than_the_sampling(tmp_path):
     rows = [",".join([str(1692888249 + k // 4), *line.split(",")[1:]]) for k, line in enumerate(LINES[1:])]
     refuse(write(tmp_path, [LINES[0], *rows]), "coarser than the sampling")
