@@ -14,6 +14,7 @@ from fieldline.estimation.calibration import (
     read_calibration,
     write_calibration,
 )
+from fieldline.estimation.calibration.selection import without_gaps
 
 
 def calibrated(flown, **options):
@@ -209,3 +210,19 @@ def test_rows_that_are_not_usable_do_not_matter(flight):
     assert masked.samples == len(flown.seconds) - 101
     assert np.abs(masked.bias_s - flown.bias).max() < 2e-7
     assert np.isnan(masked.apply(flown.seconds, wild)[300]).all()
+
+
+def test_two_passes_far_apart_are_as_good_as_one_arc(flight):
+    """Blocks are cut from the time that was sampled: else two passes a day apart were two blocks, too few to hold one out."""
+    near, far = flight("tumbling", span_s=900.0), flight("tumbling", 1, span_s=900.0, start_s=3 * 5640.0)
+    seconds = np.concatenate([near.seconds, far.seconds])
+    field_s, magnitude = np.concatenate([near.field_s, far.field_s]), np.concatenate([near.magnitude, far.magnitude])
+    found = calibrate_magnitude(seconds, field_s, magnitude)
+    assert found.model == "full"
+    assert np.abs(found.bias_s - near.bias).max() < 1e-6
+
+
+def test_gaps_are_cut_out_of_the_blocks():
+    seconds = np.concatenate([np.arange(0.0, 400.0), np.arange(86400.0, 86800.0)])
+    assert without_gaps(seconds)[-1] == pytest.approx(799.0)
+    assert np.array_equal(without_gaps(np.arange(0.0, 5000.0, 600.0)), np.arange(0.0, 5000.0, 600.0))
