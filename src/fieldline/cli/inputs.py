@@ -97,4 +97,6 @@ def _orbit_words(orbit: Any, time_utc: np.ndarray) -> str:
     about = orbit.describe(time_utc)
     age = about.get("age_days")  # least and greatest, for element sets alone
     name = about.get("name") or about.get("norad_id") or ""
+    if about.get("kind") == "positions":
+        return f"positions of the {name}"
     return f"{about.get('kind', 'orbit')} {name}" + (f", age {max(age):.1f} d" if age else "")

@@ -125,7 +125,7 @@ def _in_order(path, table: Table, time_utc: np.ndarray, choice: Choice, repair: 
     kept = kept[~repeated]
     if len(kept) < 2:
         raise InputError(
-            f'"{path}" has {len(kept)} sample{"" if len(kept) == 1 else "s"} of different times; at least two are needed.'
+            f'"{path}" has {len(kept)} sample{"" if len(kept) == 1 else "s"}; at least two are needed, of different times.'
         )
     counts = {"unreadable": table.dropped + int(missing.sum()), "unordered": unordered, "repeated": int(repeated.sum())}
     ordered = Table(columns={name: values[kept] for name, values in table.columns.items()}, place=table.place)

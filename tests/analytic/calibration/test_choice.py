@@ -214,7 +214,7 @@ def test_rows_that_are_not_usable_do_not_matter(flight):
 
 def test_two_passes_far_apart_are_as_good_as_one_arc(flight):
     """Blocks are cut from the time that was sampled: else two passes a day apart were two blocks, too few to hold one out."""
-    near, far = flight("tumbling", span_s=900.0), flight("tumbling", 1, span_s=900.0, start_s=3 * 5640.0)
+    near, far = flight("tumbling", span_s=500.0), flight("tumbling", 1, span_s=500.0, start_s=3 * 5640.0)
     seconds = np.concatenate([near.seconds, far.seconds])
     field_s, magnitude = np.concatenate([near.field_s, far.field_s]), np.concatenate([near.magnitude, far.magnitude])
     found = calibrate_magnitude(seconds, field_s, magnitude)
