@@ -168,6 +168,14 @@ def test_a_field_that_is_not_the_orbits_is_refused():
         fl.estimate_attitude(late, orbit(), calibration="none")
 
 
+def test_noise_is_refused():
+    rng = np.random.default_rng(1)
+    telemetry = tumbler(0, count=1200).telemetry
+    noise = dataclasses.replace(telemetry, field_s=3e-5 * rng.standard_normal(telemetry.field_s.shape))
+    with pytest.raises(NoEstimateError, match="which no attitude can mend"):
+        fl.estimate_attitude(noise, orbit())
+
+
 def test_too_few_samples_and_wrong_words_are_named():
     telemetry = fl.read_telemetry(SAMPLE_CSV)
     with pytest.raises(NoEstimateError, match="at least 30"):

@@ -24,6 +24,7 @@ from fieldline.estimation.reference import Reference, reference_along_orbit
 from fieldline.estimation.series import Series, make_series, part
 from fieldline.estimation.smoothing import Smoothed, smooth
 from fieldline.estimation.solution import Solution, extend, solve
+from fieldline.estimation.systematics import stretch
 from fieldline.estimation.tuning import magnitude_noise
 from fieldline.estimation.verdict import RIVAL_ANGLE_DEG, RIVAL_LIKELIHOOD, angle_between, judge_usable, refuse_magnitude
 from fieldline.frames.attitude import rotation_error_b
@@ -225,17 +226,13 @@ def _judged(arc: Arc, solution: Solution, report) -> tuple[list[dict], Smoothed]
     halves = _halves(solution)
     if halves is not None:
         error, square = halves
-        angle, stretch = np.degrees(np.linalg.norm(error)), float(np.sqrt(square / 3.0))
+        angle, apart = np.degrees(np.linalg.norm(error)), float(np.sqrt(square / 3.0))
         agree = np.sqrt(square) <= SPREAD_LIMIT
-        words = f"{stretch:.1f} times the stated 1-sigma"
+        words = f"{apart:.1f} times the stated 1-sigma"
         if not agree:
-            stretch = min(stretch, LARGEST_STRETCH)
-            smoothed = dataclasses.replace(
-                smoothed,
-                attitude_covariance_b=smoothed.attitude_covariance_b * stretch**2,
-                rate_std_b=smoothed.rate_std_b * stretch,
-            )
-            words += f"; the stated uncertainty of the whole arc has been stretched {stretch:.1f} times"
+            apart = min(apart, LARGEST_STRETCH)
+            smoothed = stretch(smoothed, apart**2)
+            words += f"; the stated uncertainty of the whole arc has been stretched {apart:.1f} times"
         lines.append(judge_line("halves of the arc, where they meet", angle, "deg", None, bool(agree), words))
     if telemetry.rate_b is not None and arc.gyro_b is None:
         lines += judge_gyro(smoothed.omega_b, telemetry.rate_b)
@@ -256,9 +253,9 @@ def _halves(solution: Solution) -> tuple[np.ndarray, float] | None:
     for rows in (slice(0, middle), slice(middle, None)):
         start = np.concatenate([smoothed.q_bi[rows][0], smoothed.omega_b[rows][0]])
         half = smooth(part(series, rows), start, smoothed.noise, smoothed.model, passes=2)
-        both.append(half)
+        both.append(stretch(half, solution.memory))
     # what constants and field model add to the whole arc, the halves carry too
-    plain = smooth(series, smoothed.start, smoothed.noise, smoothed.model, about=smoothed)
+    plain = stretch(smooth(series, smoothed.start, smoothed.noise, smoothed.model, about=smoothed), solution.memory)
     added = np.maximum(extra - plain.attitude_covariance_b, 0.0)[middle]
     first, second = both
     first.attitude_covariance_b[-1] += 0.5 * (added + added.T)

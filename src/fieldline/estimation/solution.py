@@ -24,7 +24,7 @@ from fieldline.estimation.refine import Contender, contend, settle
 from fieldline.estimation.series import Series, part
 from fieldline.estimation.smoothing import Smoothed, smooth, state_at_first
 from fieldline.estimation.starts import Candidate, find_starts
-from fieldline.estimation.systematics import widen, widen_by_field_model
+from fieldline.estimation.systematics import stretch, widen, widen_by_field_model
 from fieldline.estimation.tuning import magnitude_noise, middle_rows, substeps, tune
 
 SLOW_ERROR_TIME = 300.0  # [s] first guess of the slow error's correlation time
@@ -48,7 +48,8 @@ SeriesOf = Callable[[np.ndarray], Series]
 class Solution:
     """The motion of an arc: `smoothed` with its widened covariance, constants, all contenders and the noise floor.
 
-    added_covariance_b (3, 3) [rad2], added_rate_var (3,): what constants and field model add to it, mean over the arc.
+    memory: how many samples tell as much as one independent one. added_covariance_b (3, 3) [rad2], added_rate_var (3,): what
+    constants and field model add to the smoother's covariance, mean over the arc. core: what the contenders ran over.
     """
 
     smoothed: Smoothed
@@ -62,6 +63,7 @@ class Solution:
     core: Series
     added_covariance_b: np.ndarray
     added_rate_var: np.ndarray
+    memory: float
 
 
 def solve(
@@ -102,12 +104,16 @@ def solve(
     series = series_of(_calibration_part(constants, calibration_values))
     progress("refine", 0.7, 1.0, "uncertainty")
     smoothed = smooth(series, smoothed.start, smoothed.noise, smoothed.model, passes=FINAL_PASSES)
+    # samples that repeat each other are fewer than they seem, and the smoother's covariance shrinks with their number
+    memory = 1.0 / effective_share(smoothed.white)
+    smoothed = stretch(smoothed, memory)
     widened = widen_by_field_model(widen(smoothed, constants, series_of), series, seed)
     left = series.field_b - widened.slow_b - widened.predicted(series)
     progress("refine", 1.0, 1.0, f"residual {1e6 * np.sqrt((left[series.used] ** 2).mean()):.2f} µT RMS")
     return Solution(
         smoothed=widened,
         added_covariance_b=(widened.attitude_covariance_b - smoothed.attitude_covariance_b).mean(axis=0),
+        memory=memory,
         added_rate_var=(widened.rate_std_b**2 - smoothed.rate_std_b**2).mean(axis=0),
         constants=constants,
         contenders=tuple(settled + [c for c in contenders if all(c.candidate is not s.candidate for s in settled)]),
@@ -137,7 +143,7 @@ def extend(solution: Solution, series_of: SeriesOf, calibration_values, first_ro
     series = series_of(_calibration_part(solution.constants, calibration_values))
     state = np.concatenate([core.q_bi[0], core.omega_b[0]])
     start = state_at_first(series, first_row, state, core.noise, core.model)
-    smoothed = smooth(series, start, core.noise, core.model, passes=2)
+    smoothed = stretch(smooth(series, start, core.noise, core.model, passes=2), solution.memory)
     progress("smooth", 1.0, 1.0, f"{len(series.seconds):,} samples")
     return replace(
         solution,

@@ -29,6 +29,15 @@ FIELD_MODEL_TIME = 240.0  # [s] about 1,800 km of orbit, degree 22
 FIELD_DRAWS = 8
 
 
+def stretch(smoothed: Smoothed, variance_factor: float) -> Smoothed:
+    """Attitude covariance and rate variance times a factor."""
+    return replace(
+        smoothed,
+        attitude_covariance_b=smoothed.attitude_covariance_b * variance_factor,
+        rate_std_b=smoothed.rate_std_b * np.sqrt(variance_factor),
+    )
+
+
 def widen(smoothed: Smoothed, constants: Constants, series_of: Callable[[np.ndarray], Series]) -> Smoothed:
     """The smoothed arc with covariance and rate spread widened by (1)."""
     if constants.values.size == 0:
