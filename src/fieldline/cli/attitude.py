@@ -87,6 +87,8 @@ def run(job: Job) -> int:
     if job.report is not None:
         paths[".html"] = job.report
         refuse_inputs([job.report], inputs)
+        if not job.report.parent.is_dir():
+            raise InputError(f'--report "{job.report}": the folder "{job.report.parent}" does not exist. Make it first.')
     calibration, inertia = read_calibration(job.calibration), parse_inertia(job.inertia)
     with progress_on_stderr(job.quiet) as progress:
         telemetry = read_flight(job.telemetry, job.source, progress)

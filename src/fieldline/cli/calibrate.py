@@ -12,6 +12,7 @@ from fieldline.cli import options
 from fieldline.cli.inputs import Source, orbit_for, read_flight
 from fieldline.cli.outputs import stem_of, targets, wrote
 from fieldline.cli.progress import progress_on_stderr
+from fieldline.errors import NoEstimateError
 
 ENDINGS = (".json", ".html")
 
@@ -53,6 +54,7 @@ def calibrate(
     paths = targets(stem_of(out, telemetry[0], "calibration"), ENDINGS, [*telemetry, orbit, mapping, eop])
     columns = tuple(name.strip() for one in use or () for name in one.split(","))
     from fieldline.estimation.calibrate import calibrate as calibrated
+    from fieldline.report.calibration_report import misfit, verdict_sentence
 
     with progress_on_stderr(quiet) as progress:
         flown = [read_flight(path, source, progress) for path in telemetry]
@@ -67,9 +69,10 @@ def calibrate(
     if as_json:
         print(json.dumps(summaries[0] if len(summaries) == 1 else summaries, indent=2))
     elif not quiet:
-        from fieldline.report.calibration_report import verdict_sentence
-
         print(f"{verdict_sentence(summaries)}\n{wrote(written)}")
+    doubt = misfit(flights)
+    if doubt:
+        raise NoEstimateError(doubt)
     return 0
 
 

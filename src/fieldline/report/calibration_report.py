@@ -39,7 +39,9 @@ def calibration_html(flights: Sequence[CalibratedFlight], settings: dict[str, An
     from fieldline.report.verdict import panel
 
     first = flights[0]
-    head = panel("usable", "Calibrated", verdict_sentence([f.summary for f in flights]))
+    doubt = misfit(flights)
+    state, words = ("refused", "Not usable") if doubt else ("usable", "Calibrated")
+    head = panel(state, words, verdict_sentence([f.summary for f in flights]), [doubt] if doubt else [])
     inputs = "".join(f"<h3>{text(f.name)}</h3>{sentences(f.lines)}" for f in flights)
     return page(
         f"Calibration from {first.name}" + (f" and {len(flights) - 1} more" if len(flights) > 1 else ""),
@@ -61,6 +63,20 @@ def verdict_sentence(summaries: Sequence[dict[str, Any]]) -> str:
     bias = ", ".join(f"{b:.2f}" for b in first["bias_ut"])
     rms = ", ".join(f"{s['rms_nt']:.0f}" for s in summaries)
     return f"model {first['model']}, bias ({bias}) ± {max(first['bias_std_ut']):.2g} µT, leaves {rms} nT RMS in magnitude"
+
+
+def misfit(flights: Sequence[CalibratedFlight]) -> str:
+    """Why the calibration explains a flight no better than chance, in a sentence; empty where it explains them all."""
+    from fieldline.estimation.verdict import LARGEST_MAGNITUDE_SHARE
+
+    for flight in flights:
+        share = 1e-9 * flight.summary["rms_nt"] / float(np.median(flight.magnitude_tesla))
+        if share > LARGEST_MAGNITUDE_SHARE:
+            return (
+                f"No usable calibration: the magnitude of {flight.name} misses the model's by {100 * share:.0f} % RMS. Check "
+                "that orbit and time stamps (UTC) belong to this satellite, and the unit."
+            )
+    return ""
 
 
 def pictures(flights: Sequence[CalibratedFlight]) -> list[Picture]:

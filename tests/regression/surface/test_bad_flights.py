@@ -127,3 +127,16 @@ def test_bad_orbits(folder, capsys, kind):
 def test_missing_files(folder, capsys, name):
     (folder / name).unlink()
     refused(folder, capsys, 2, f'"{name}" does not exist')
+
+
+def test_a_calibration_that_explains_nothing_ends_with_1(folder, capsys):
+    (folder / "in.csv").write_bytes(FLIGHTS["noise"][0])
+    assert main(["calibrate", "in.csv", "--orbit", "sat.tle", "--out", "sensor", "--quiet"]) == 1
+    assert "No usable calibration: the magnitude of in.csv misses the model's" in capsys.readouterr().err
+    assert "Not usable" in (folder / "sensor.html").read_text()
+
+
+def test_a_report_that_has_no_folder_is_refused_before_the_work(folder, capsys):
+    (folder / "in.csv").unlink()
+    assert main(["attitude", "in.csv", "--orbit", "sat.tle", "--report", "nowhere/r.html"]) == 2
+    assert 'the folder "nowhere" does not exist' in capsys.readouterr().err
