@@ -105,4 +105,6 @@ def _calibration(calibration: dict[str, Any]) -> str:
 def _arc(record: Record) -> str:
     """Start, length, step."""
     start = np.datetime_as_string(record.time_utc[0], unit="s").replace("T", " ")
-    return f"{start} UTC, {number(float(record.seconds[-1]) / 60.0, 3)} min, every {number(record.step_s, 3)} s"
+    minutes = float(record.seconds[-1]) / 60.0
+    length = f"{number(minutes, 3)} min" if minutes < 600.0 else f"{number(minutes / 60.0, 3)} h"
+    return f"{start} UTC, {length}, every {number(record.step_s, 3)} s"
