@@ -14,8 +14,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import sqrt
 
 import numpy as np
+from numba import njit
 
 from fieldline.estimation.polish import Constants, _with
 from fieldline.estimation.series import Series, part
@@ -88,16 +90,21 @@ def widen_by_field_model(smoothed: Smoothed, series: Series, seed: int) -> Smoot
     return replace(smoothed, attitude_covariance_b=covariance, rate_std_b=np.sqrt(smoothed.rate_std_b**2 + rate_var))
 
 
+@njit(cache=True)
+def _remember(rows, fade):
+    """White rows (n, 3) become first-order noise of the same unit spread, in place."""
+    gain = sqrt(1.0 - fade * fade)
+    for k in range(1, rows.shape[0]):
+        for j in range(3):
+            rows[k, j] = fade * rows[k - 1, j] + gain * rows[k, j]
+
+
 def first_order_noise(seconds: np.ndarray, time_s: float, rng: np.random.Generator) -> np.ndarray:
     """(n, 3) Gauss-Markov noise of unit spread at `seconds`, with the correlation exp(-dt / time_s)."""
-    from scipy.signal import lfilter
-
     step = float(np.median(np.diff(seconds)))
     even = np.arange(0.0, seconds[-1] - seconds[0] + 2.0 * step, step)
-    fade = np.exp(-step / time_s)
-    white = rng.standard_normal((len(even), 3))
-    white[1:] *= np.sqrt(1.0 - fade**2)
-    coloured = lfilter([1.0], [1.0, -fade], white, axis=0)
+    coloured = rng.standard_normal((len(even), 3))
+    _remember(coloured, float(np.exp(-step / time_s)))
     return np.stack([np.interp(seconds - seconds[0], even, coloured[:, k]) for k in range(3)], axis=1)
 
 
