@@ -268,7 +268,9 @@ class _Polish:
         prior = -0.5 * float(off @ np.linalg.solve(constants.prior_covariance, off)) if off.size else 0.0
         return log_likelihood + self.volume_of(constants.values[: constants.calibrated], self.rows) + prior
 
-    def climb(self, constants: Constants, start, noise: Noise, like: RateModel, quiet: float | None) -> _Climbed:
+    def climb(
+        self, constants: Constants, start, noise: Noise, like: RateModel, quiet: float | None, rounds: int = POLISH_ROUNDS
+    ) -> _Climbed:
         """Constants and noise in turn; with `quiet`, the rate noise is held there first, then set free."""
         if quiet is not None:
             like = like._replace(noise=quiet)
@@ -279,7 +281,7 @@ class _Polish:
                 constants, gained = self.step(constants, start, noise, like)
                 if gained < 1.0:
                     break
-        for _ in range(POLISH_ROUNDS):
+        for _ in range(rounds):
             constants, gained = self.step(constants, start, noise, like)
             arc = self.arc(constants)
             noise, like, _ = tune(arc, start, noise, constants.model(like), min(self.floor, magnitude_noise(arc)))
@@ -316,7 +318,9 @@ def _polished(job: _Polish, series: Series, winner: Contender, values, covarianc
     rows = middle_rows(series, parts)
     job, first_row = replace(job, rows=rows), rows.start
     start = np.concatenate([smoothed.q_bi[first_row], smoothed.omega_b[first_row]])
-    tops = [job.climb(constants, start, smoothed.noise, smoothed.model, None)]
+    # where the magnitudes have settled the calibration, little is left to climb
+    rounds = POLISH_ROUNDS if unsure or rigid else POLISH_ROUNDS // 2
+    tops = [job.climb(constants, start, smoothed.noise, smoothed.model, None, rounds)]
     # a fast spinner shows its calibration and its shape by itself, and its rigid motion is dear to follow
     quiet_noises = () if parts > 2 else QUIET_NOISES if unsure else QUIET_NOISES[:1] if rigid else ()
     if quiet_noises:
