@@ -100,7 +100,9 @@ def test_same_input_same_bits(flown, estimate):
 
 def test_with_the_gyro_the_result_stays_and_the_gyros_bias_is_found(flown, estimate):
     used = fl.estimate_attitude(*flown, use=("gyro",))
-    assert json.loads(used.attrs["verdict_json"])["usable"]
+    verdict = json.loads(used.attrs["verdict_json"])
+    assert verdict["usable"]
+    assert verdict["judgement"][0]["passed"], verdict["judgement"][0]
     turn = np.degrees(np.linalg.norm(rotation_error_b(estimate["q_bi"].values, used["q_bi"].values), axis=1))
     assert np.median(turn) < 3.0
     bias = np.degrees(np.median(used["gyro_b"].values - used["omega_bi_b"].values, axis=0))

@@ -138,6 +138,15 @@ def test_coarse_digits_of_1990(count, limit_deg):
     assert nees(flight, estimate) < 2.0
 
 
+def test_a_tumbler_sampled_ten_times_a_second():
+    """Nine samples then span 0.8 s: the search has to look over wider ones, and the whole record is smoothed all the same."""
+    flight = tumbler(2, count=20_000, step_s=0.1)
+    estimate = estimate_of(flight, calibration="none")
+    assert len(estimate["time"]) == 20_000
+    assert np.sqrt(np.mean(attitude_error_deg(flight, estimate) ** 2)) < 0.6
+    assert nees(flight, estimate) < 2.0
+
+
 def test_a_fast_spinner_sampled_once_a_second():
     """60 deg between samples, time stamps rounded to whole seconds, noise of 0.5 microtesla."""
     reference = reference_along_orbit(times_utc(3000, 1.0), orbit())

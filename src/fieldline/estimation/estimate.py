@@ -33,6 +33,9 @@ from fieldline.orbit import Orbit, orbit_from_positions
 from fieldline.telemetry import Telemetry
 
 FEWEST = 30  # usable samples
+HALVES = "halves of the arc, where they meet"
+CORE_FEWEST = 1_500  # rows that thinning leaves, at least
+CORE_TURN = 0.3  # [rad]
 CORE_ROWS = 20_000  # of a longer arc: its middle, on which everything but attitude and rate is found
 LARGEST_STRETCH = 3.0  # of the whole arc's uncertainty: half an arc may go astray where the whole one does not
 UNSURE = 0.02  # of the field: a calibration this uncertain is found together with the motion
@@ -83,21 +86,36 @@ class Arc:
         return float((3.0 * np.log(np.maximum(gain, 1e-9)) + size)[telemetry.usable[rows]].sum()) if sign > 0 else -np.inf
 
     def core(self) -> tuple[Arc, slice]:
-        """The middle of a long arc, on which motion, noise and constants are found, and its rows."""
+        """The part of a long arc on which motion, noise and constants are found, and its rows.
+
+        Samples that are closer than the motion needs are passed over first; then the middle is taken.
+        """
         n = len(self.telemetry)
-        first = max(0, (n - CORE_ROWS) // 2)
-        rows = slice(first, min(n, first + CORE_ROWS))
-        if rows.stop - rows.start == n:
+        stride = self._stride()
+        first = max(0, (n - CORE_ROWS * stride) // 2)
+        rows = slice(first, min(n, first + CORE_ROWS * stride), stride)
+        if stride == 1 and rows.stop - rows.start == n:
             return self, rows
         core = dataclasses.replace(
             self,
-            telemetry=self.telemetry.slice(rows.start, rows.stop),
+            telemetry=self.telemetry.rows(rows),
             reference=self.reference.part(rows),
             columns=self._columns_at(rows),
             gyro_b=None if self.gyro_b is None else self.gyro_b[rows],
             moment_b=None if self.moment_b is None else self.moment_b[rows],
         )
         return core, rows
+
+    def _stride(self) -> int:
+        """Every how many samples a densely sampled arc is read: the field turns by CORE_TURN between them, at most."""
+        field_b = self.series(None).field_b[self.telemetry.usable]
+        stride = 1
+        while len(field_b) // (2 * stride) >= CORE_FEWEST:
+            ahead = field_b[:: 2 * stride]
+            if np.median(angle_between(ahead[1:], ahead[:-1])) > CORE_TURN:
+                break
+            stride *= 2
+        return stride
 
     def unsure(self) -> bool:
         """Whether the magnitudes left the calibrated field more uncertain than UNSURE of itself."""
@@ -130,7 +148,7 @@ def estimate_attitude(
     telemetry : as `read_telemetry` gives it.      orbit : as `read_orbit` gives it; None takes the telemetry's own positions.
     model : field model by name, or a FieldModel; degree : its highest degree, all where None.
     calibration : "auto", "none", "bias", "full", or a Calibration; whatever is fitted by magnitude is refined with the
-        attitude, "none" and a given Calibration are left as they are.
+        attitude (a given Calibration is where that starts and what it may not leave far behind); "none" is left as it is.
     use : columns besides the magnetometer that may be used: "gyro" (the rate's random walk becomes the gyro's error),
         "temperature", "dipole", "current" (in the calibration; a dipole command is also the torque of a body whose inertia is
         given).
@@ -204,7 +222,7 @@ def _calibrated(telemetry, reference, calibration, use, report) -> tuple[Arc, bo
     """The arc with its calibration, and whether that may be refined with the attitude."""
     report("calibration", 0, 1, "")
     columns = tuple(name for name in use if name in COLUMNS)
-    free = not isinstance(calibration, Calibration) and calibration != "none"
+    free = isinstance(calibration, Calibration) or calibration != "none"
     if isinstance(calibration, Calibration):
         found = calibration
     else:
@@ -233,7 +251,7 @@ def _judged(arc: Arc, solution: Solution, report) -> tuple[list[dict], Smoothed]
             apart = min(apart, LARGEST_STRETCH)
             smoothed = stretch(smoothed, apart**2)
             words += f"; the stated uncertainty of the whole arc has been stretched {apart:.1f} times"
-        lines.append(judge_line("halves of the arc, where they meet", angle, "deg", None, bool(agree), words))
+        lines.append(judge_line(HALVES, angle, "deg", None, bool(agree), words))
     if telemetry.rate_b is not None and arc.gyro_b is None:
         lines += judge_gyro(smoothed.omega_b, telemetry.rate_b)
     if telemetry.sun_sensor:
@@ -251,8 +269,10 @@ def _halves(solution: Solution) -> tuple[np.ndarray, float] | None:
     extra = smoothed.attitude_covariance_b
     both = []
     for rows in (slice(0, middle), slice(middle, None)):
-        start = np.concatenate([smoothed.q_bi[rows][0], smoothed.omega_b[rows][0]])
-        half = smooth(part(series, rows), start, smoothed.noise, smoothed.model, passes=2)
+        about = dataclasses.replace(
+            smoothed, q_bi=smoothed.q_bi[rows], omega_b=smoothed.omega_b[rows], slow_b=smoothed.slow_b[rows]
+        )
+        half = smooth(part(series, rows), about.start, smoothed.noise, smoothed.model, passes=3, about=about)
         both.append(stretch(half, solution.memory))
     # what constants and field model add to the whole arc, the halves carry too
     plain = stretch(smooth(series, smoothed.start, smoothed.noise, smoothed.model, about=smoothed), solution.memory)
@@ -260,7 +280,7 @@ def _halves(solution: Solution) -> tuple[np.ndarray, float] | None:
     first, second = both
     first.attitude_covariance_b[-1] += 0.5 * (added + added.T)
     gap = float(series.seconds[middle] - series.seconds[middle - 1])
-    return meeting(first, second, gap)
+    return meeting(first, second, series.gyro_b[middle], gap)
 
 
 def _rivals(solution: Solution) -> list[str]:
@@ -318,7 +338,8 @@ def _verdict(arc: Arc, solution: Solution, smoothed: Smoothed, judgement: list[d
     std = np.degrees(np.sqrt(np.maximum(smoothed.attitude_covariance_b[:, [0, 1, 2], [0, 1, 2]], 0.0)))
     found = consistency(smoothed.white)
     misfit = float(np.degrees(np.sqrt(np.mean(angle_between(measured[used], predicted[used]) ** 2))))
-    usable, sentence = judge_usable(np.median(std, axis=0), float(std.max()), misfit, _rivals(solution), found)
+    apart = next((line["value"] for line in judgement if line["what"] == HALVES and not line["passed"]), 0.0)
+    usable, sentence = judge_usable(np.median(std, axis=0), float(std.max()), misfit, apart, _rivals(solution), found)
     model = smoothed.model
     return {
         "usable": usable,
@@ -347,7 +368,19 @@ def _verdict(arc: Arc, solution: Solution, smoothed: Smoothed, judgement: list[d
             "slow_time_s": float(smoothed.noise.coloured_time),
             "rate_noise_rad_s15": float(model.noise),
         },
-        "settings": {"use": list(use), "seed": seed, "calibration": arc.calibration.model},
+        "settings": _settings(arc, solution, use, seed),
+    }
+
+
+def _settings(arc: Arc, solution: Solution, use, seed: int) -> dict:
+    """What the run was told, plain types."""
+    inertia = solution.constants.inertia
+    return {
+        "use": list(use),
+        "seed": seed,
+        "calibration": arc.calibration.model,
+        "field_model": arc.reference.model,
+        "inertia_kg_m2": None if inertia is None else np.asarray(inertia).tolist(),
     }
 
 
@@ -405,6 +438,6 @@ def _provenance(arc: Arc, solution: Solution, use, seed: int) -> dict:
         "versions": {name: metadata.version(name) for name in packages} | {"python": platform.python_version()},
         "inputs": {"telemetry": {"name": arc.telemetry.name, "sha256": arc.telemetry.sha256}, "orbit": arc.reference.orbit},
         "field_model": arc.reference.stamp,
-        "settings": {"use": list(use), "seed": seed, "calibration": arc.calibration.model},
+        "settings": _settings(arc, solution, use, seed),
         "noise": solution.smoothed.noise._asdict() | {"rate_noise_rad_s15": float(solution.smoothed.model.noise)},
     }

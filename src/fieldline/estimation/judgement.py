@@ -123,14 +123,15 @@ def spin_phase(sun_b: np.ndarray, axis: np.ndarray, faces: dict, rows: np.ndarra
     return float(np.degrees(min(fits, key=lambda fit: fit.cost).x[0]))
 
 
-def meeting(first: Smoothed, second: Smoothed, gap_s: float) -> tuple[np.ndarray, float]:
+def meeting(first: Smoothed, second: Smoothed, gyro_b: np.ndarray, gap_s: float) -> tuple[np.ndarray, float]:
     """Rotation [rad, body axes] from the first half's end, carried over the gap, to the second's start; and its d^2.
 
-    d^2 = e^T (P_1 + P_2)^-1 e has expectation 3 where both halves are as good as they say.
+    d^2 = e^T (P_1 + P_2)^-1 e has expectation 3 where both halves are as good as they say. gyro_b (3,) [rad/s]: the rate that
+    the random walk rides on there.
     """
     from scipy.spatial.transform import Rotation
 
-    rate = 0.5 * (first.omega_b[-1] + second.omega_b[0])
+    rate = 0.5 * (first.omega_b[-1] + second.omega_b[0]) + gyro_b
     carried = (Rotation.from_quat(first.q_bi[-1]) * Rotation.from_rotvec(rate * gap_s)).as_quat()
     error = rotation_error_b(second.q_bi[0], carried)
     spread = first.attitude_covariance_b[-1] + second.attitude_covariance_b[0]

@@ -39,7 +39,7 @@ def angle_between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def judge_usable(
-    std_deg: np.ndarray, worst_deg: float, misfit_deg: float, rivals: list[str], consistency: dict
+    std_deg: np.ndarray, worst_deg: float, misfit_deg: float, halves_deg: float, rivals: list[str], consistency: dict
 ) -> tuple[bool, str]:
     """Whether the estimate may be used, and the sentence."""
     attitude = " ".join(degrees(v) for v in std_deg)
@@ -48,6 +48,11 @@ def judge_usable(
         return False, (
             f"No usable attitude: the best motion misses the measured field's direction by {misfit_deg:.0f}° RMS. "
             "Check that orbit, time stamps (UTC), axes and units belong to this satellite."
+        )
+    if halves_deg > RIVAL_ANGLE_DEG:
+        return False, (
+            f"No usable attitude: the halves of the arc, estimated apart, disagree by {degrees(halves_deg)} where they meet, "
+            "more than their uncertainty allows. Something acts that neither a wandering rate nor a rigid body describes."
         )
     if rivals:
         return False, (

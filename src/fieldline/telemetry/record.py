@@ -136,6 +136,12 @@ class Telemetry:
             raise InputError(f"slice({start}, {stop}) of {len(self)} samples is empty.")
         return self._each(lambda column: column[part])
 
+    def rows(self, rows: slice) -> Telemetry:
+        """The samples of a slice, steps and all, with every column; the median step is that of the samples taken."""
+        taken = self._each(lambda column: column[rows])
+        step = self.quality.step_s * (rows.step or 1)
+        return dataclasses.replace(taken, quality=dataclasses.replace(self.quality, step_s=step))
+
     def _each(self, of) -> Telemetry:
         """A copy with `of` applied to every column."""
 
