@@ -178,8 +178,8 @@ def _grown(series, centre: int, rows: int, motion: Motion, noise_tesla: float, f
         motion, held = longer, rows
     kind = "rigid body" if free_dipole else "constant rate"
     spin = np.degrees(np.linalg.norm(motion.omega_b))
-    fit = f"{motion.samples} samples fitted to {np.sqrt(motion.chi2):.1f} of 1 % of the field"
-    return Candidate(motion=motion, row=centre, rows=held, words=f"{kind}, {spin:.3g} deg/s; {fit}")
+    fit = f"misfit {np.sqrt(motion.chi2):.1f} over {motion.samples} samples"
+    return Candidate(motion=motion, row=centre, rows=held, words=f"{kind}, {spin:.3g} deg/s, {fit}")
 
 
 def lengthened(series: Series, candidate: Candidate, noise_tesla: float) -> Candidate:

@@ -111,7 +111,8 @@ def motion_words(verdict: dict[str, Any]) -> str:
     if ratio:
         rows = [[axis, *(number(float(one), 3) for one in row)] for axis, row in zip(AXES, ratio, strict=True)]
         words += table(("inertia, mean 1", *AXES), rows, "numbers")
-    return words + sentences(verdict.get("remarks") or [])
+    aliases = [motion["aliases"]] if motion.get("aliases") else []
+    return words + sentences(aliases + (verdict.get("remarks") or []))
 
 
 def noise_words(noise: dict[str, Any]) -> str:
