@@ -52,7 +52,7 @@ def store(rows, k, p):
             rows[k, 9 * i + j] = p[i][j]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def step_forward(p, phi, psi, lam, fade, drive, noise, h, coloured):
     """F P F^T + Q; drive [T^2] is what the coloured error gains over the step, noise s of the rate."""
     aa, ar, rr, ac, rc, cc = p
@@ -70,7 +70,7 @@ def step_forward(p, phi, psi, lam, fade, drive, noise, h, coloured):
     return (symmetric(aa), ar, symmetric(rr), ac, rc, symmetric(cc))
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def measurement_gain(p, h, r, coloured):
     """P H^T (three blocks) and S = H P H^T + R."""
     aa, ar, _, ac, rc, cc = p
@@ -84,7 +84,7 @@ def measurement_gain(p, h, r, coloured):
     return ga, gr, gc, symmetric(matadd(matadd(matmul(h, ga), gc), r))
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def updated(p, ga, gr, gc, s_inv, coloured):
     """P - P H^T S^-1 H P."""
     aa, ar, rr, ac, rc, cc = p
@@ -200,7 +200,7 @@ def inverted(s):
     return symmetric(inverse(s))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inline="always", error_model="numpy")
 def whitened(s, v):
     """L^-1 v with L L^T = S: a vector whose covariance is S becomes one of covariance I."""
     l00 = sqrt(s[0])

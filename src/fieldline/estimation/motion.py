@@ -81,7 +81,7 @@ def told(series, j, k, model):
     return scale(0.5, add(vec(series.gyro_b, j), vec(series.gyro_b, k)))
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def propagate(q, w, known, field_i, pull_i, h, model):
     """q, w after h [s] (negative runs backwards) with Phi, Psi, Lam of (1); field and pull feed the torques.
 
