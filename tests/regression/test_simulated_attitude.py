@@ -11,6 +11,7 @@ import pytest
 
 import fieldline as fl
 from fieldline.errors import InputError, NoEstimateError
+from fieldline.estimation.estimate import _calibrated
 from fieldline.estimation.reference import reference_along_orbit
 from fieldline.estimation.systematics import first_order_noise
 from fieldline.simulate import Magnetometer, fly_free
@@ -145,6 +146,14 @@ def test_a_tumbler_sampled_ten_times_a_second():
     assert len(estimate["time"]) == 20_000
     assert np.sqrt(np.mean(attitude_error_deg(flight, estimate) ** 2)) < 0.6
     assert nees(flight, estimate) < 2.0
+
+
+def test_half_a_turn_between_samples_is_not_taken_for_rest():
+    """Every other sample of such a body points the same way; the search must not thin to those."""
+    reference = reference_along_orbit(times_utc(4000, 1.0), orbit())
+    flight = fly_free(reference, omega0_deg_s=(0.0, 178.0, 0.0), inertia_kg_m2=(0.02, 0.03, 0.02), gravity_gradient=False, seed=1)
+    arc, _ = _calibrated(flight.telemetry, reference, "none", (), lambda *_: None)
+    assert arc.core()[1].step == 1
 
 
 def test_a_fast_spinner_sampled_once_a_second():

@@ -111,8 +111,9 @@ class Arc:
         field_b = self.series(None).field_b[self.telemetry.usable]
         stride = 1
         while len(field_b) // (2 * stride) >= CORE_FEWEST:
-            ahead = field_b[:: 2 * stride]
-            if np.median(angle_between(ahead[1:], ahead[:-1])) > CORE_TURN:
+            # judged before it is doubled: a body that turns half round between samples would look at rest at every other one
+            taken = field_b[::stride]
+            if np.median(angle_between(taken[1:], taken[:-1])) > 0.5 * CORE_TURN:
                 break
             stride *= 2
         return stride
