@@ -1,0 +1,1 @@
+"""Flight software that acts: laws from a measurement to a command."""
