@@ -8,7 +8,7 @@ theta is the Earth rotation angle with the rate of UT1 = UTC, taken out of the n
 is left of `frames.earth_rotation`: precession and nutation (and, with measured orientation, the drift of UT1 and the
 pole, which seen from i turns once a day). N and the Sun's place are interpolated by (3) with h = 30 minutes.
 
-Against `dcm_ei` and `sun_position_i` at the same times: 1e-11 without and 5e-11 with measured orientation in any element
+Against `dcm_ei` and `sun_position_i` at the same times: 2e-12 without and 5e-11 with measured orientation in any element
 (0.3 mm in low orbit), 1e-12 of the Sun's distance. `t` is UTC seconds since the start; before the first and past the
 last node (3) holds the end's value and theta runs on.
 """
