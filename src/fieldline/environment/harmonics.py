@@ -105,6 +105,30 @@ def gradient_kernel(r_e, basis, table):
     return (xx, xy, xz, xy, yy, yz, xz, yz, -xx - yy)
 
 
+@njit(cache=True)
+def potential_kernel(r_e, basis, table):
+    """V / a of equation (1) [unit of g] at r_e [m] (tuple) of a flat table (2 L,) made by `potential_table`."""
+    ratio = basis.radius_m / dot(r_e, r_e)
+    s, t, u = ratio * r_e[0], ratio * r_e[1], ratio * r_e[2]
+    square = ratio * basis.radius_m
+    first = sqrt(square)
+    cosine, sine = 1.0, 0.0
+    value = 0.0
+    row = 0
+    for m in range(basis.order + 1):
+        below, here = 0.0, first
+        along_cosine, along_sine = 0.0, 0.0
+        for _ in range(m, basis.degree + 1):
+            along_cosine += table[2 * row] * here
+            along_sine += table[2 * row + 1] * here
+            above = basis.recursion[2 * row] * u * here - basis.recursion[2 * row + 1] * square * below  # (4)
+            below, here = here, above
+            row += 1
+        value += cosine * along_cosine + sine * along_sine
+        cosine, sine = cosine * s - sine * t, cosine * t + sine * s  # (3)
+    return value
+
+
 def basis_for(degree: int, order: int, radius_m: float) -> Basis:
     """The functions up to `degree` and `order`, with their recursion (4)."""
     pairs = np.zeros((_rows(degree, order), 2))
@@ -119,6 +143,12 @@ def basis_for(degree: int, order: int, radius_m: float) -> Basis:
 def field_table(g, h, order: int) -> np.ndarray:
     """(..., 6 L) sums of (2) for B = -grad V [unit of g], from (..., N+1, N+1) Schmidt coefficients g, h."""
     return _table([_negative(pair) for pair in derivatives(g, h)], order + 1)
+
+
+def potential_table(g, h, order: int) -> np.ndarray:
+    """(..., 2 L) sums for V / a [unit of g], over the functions of `field_table`: one degree and order more than g, h."""
+    space = [(0, 0)] * (np.ndim(g) - 2) + [(0, 1), (0, 1)]
+    return _table([(np.pad(g, space), np.pad(h, space))], order + 1)
 
 
 def gradient_table(g, h, order: int, radius_m: float) -> np.ndarray:
