@@ -6,6 +6,7 @@ import pytest
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M as EARTH
 from fieldline.constants import SUN_RADIUS_M
 from fieldline.environment import eclipse, sun_position_i
+from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.errors import InputError
 
 NOW = np.datetime64("2023-08-24T15:00")
@@ -38,6 +39,26 @@ def sunlit_by_rays(place, across=300):
     along = ray @ place
     hit = (along < 0.0) & (along**2 > place @ place - EARTH**2)
     return 1.0 - hit.mean()
+
+
+@pytest.mark.kernels
+def test_the_kernel_is_the_function_and_the_lens_formula():
+    rng = np.random.default_rng(8)
+    places = behind(rng.uniform(6.5e6, 4.3e7, 400)[:, None], rng.uniform(-np.pi, np.pi, 400))
+    places[::2] = behind(6.9e6, np.arcsin(EARTH / 6.9e6) + rng.uniform(-0.006, 0.006, 200))  # half of them in penumbra
+    alone = [sunlit_kernel(tuple(place), tuple(SUN)) for place in places]
+    assert (eclipse(places, NOW) == alone).all()
+    assert 50 < np.count_nonzero((np.array(alone) > 0.0) & (np.array(alone) < 1.0))
+    for place, sunlit in zip(places, alone, strict=True):
+        a = np.arcsin(SUN_RADIUS_M / np.linalg.norm(SUN - place))
+        b = np.arcsin(EARTH / np.linalg.norm(place))
+        c = np.arccos((SUN - place) @ -place / np.linalg.norm(SUN - place) / np.linalg.norm(place))
+        if abs(a - b) < c < a + b:
+            x, y = np.arccos((c * c + a * a - b * b) / (2 * c * a)), np.arccos((c * c + b * b - a * a) / (2 * c * b))
+            covered = a * a * (x - np.sin(2 * x) / 2) + b * b * (y - np.sin(2 * y) / 2)
+            assert sunlit == pytest.approx(1.0 - covered / (np.pi * a * a), abs=1e-5)
+        else:
+            assert sunlit in (0.0, 1.0)
 
 
 def test_cylinder_is_dark_for_the_closed_form_part_of_an_orbit():
