@@ -4,7 +4,7 @@ from math import log2, sqrt
 
 import numpy as np
 import pytest
-from scipy.integrate import DOP853 as SciPyDOP853
+from scipy.integrate import DOP853 as PEER
 
 from fieldline.integrate.dense import dense_coefficients, dense_value, hermite_coefficients
 from fieldline.integrate.steps import combine, error_norm, error_scale, next_step, starting_step
@@ -176,7 +176,7 @@ def test_the_cubic_fits_in_three_rows_as_in_seven():
 
 def test_a_step_of_dop853_its_error_and_its_interpolant_are_scipys():
     h, tolerance = 0.01, 1e-9
-    peer = SciPyDOP853(arenstorf, 0.0, ARENSTORF_START, 20.0, first_step=h, rtol=1e-3, atol=1e-3)
+    peer = PEER(arenstorf, 0.0, ARENSTORF_START, 20.0, first_step=h, rtol=1e-3, atol=1e-3)
     peer.step()
     assert peer.t == h
     k, scale = np.zeros((16, 4)), np.empty(4)
@@ -196,7 +196,7 @@ def test_a_step_of_dop853_its_error_and_its_interpolant_are_scipys():
 def test_the_arenstorf_orbit_closes_in_as_few_steps_as_scipys():
     end, accepted, refused = adaptive(arenstorf, ARENSTORF_START, ARENSTORF_PERIOD, 1e-11)
     assert np.abs(end - ARENSTORF_START)[:2].max() < 1e-5  # the orbit multiplies an early error about a millionfold
-    peer = SciPyDOP853(arenstorf, 0.0, ARENSTORF_START, ARENSTORF_PERIOD, rtol=1e-11, atol=1e-11)
+    peer = PEER(arenstorf, 0.0, ARENSTORF_START, ARENSTORF_PERIOD, rtol=1e-11, atol=1e-11)
     steps = 0
     while peer.status == "running":
         peer.step()

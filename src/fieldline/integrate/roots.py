@@ -40,7 +40,7 @@ def evaluations(width, tolerance):
     """Evaluations that suffice to narrow a bracket of this width to the tolerance."""
     if width <= tolerance:
         return 0
-    return int(ceil(log2(width / tolerance))) + SPARE_EVALUATIONS
+    return ceil(log2(width / tolerance)) + SPARE_EVALUATIONS
 
 
 @njit(cache=True)
