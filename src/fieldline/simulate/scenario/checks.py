@@ -1,0 +1,145 @@
+"""What a scenario's tables must be to each other; no file is opened here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from fieldline.errors import InputError, nearest
+from fieldline.simulate.scenario.coarseness import fastest_rate, too_coarse
+
+MOST_SAMPLES = 50_000_000
+NEEDS = {"dipole": "magnetorquer", "wheel_torque": "wheel", "thrust": "thruster"}
+
+Found = Iterator[tuple[str, str]]
+
+
+def problems(scenario) -> Found:
+    """(path of a key, what is wrong with it), for everything at once."""
+    yield from _starts(scenario)
+    yield from _names(scenario)
+    yield from _lines(scenario)
+    yield from _software(scenario)
+    yield from _events(scenario)
+    yield from _models(scenario)
+    yield from _lengths(scenario)
+
+
+def _starts(scenario) -> Found:
+    """The first body has the orbit, the others one of their own or a place beside the first."""
+    first = scenario.body[0]
+    if scenario.orbit is None and first.orbit is None:
+        yield "orbit", "is missing: say where the first body starts, for example [orbit.sun_synchronous] with altitude_km"
+    if scenario.orbit is not None and first.orbit is not None:
+        yield "body[0].orbit", "is given beside [orbit], which is the first body's; leave one of them out"
+    if first.offset_o_m is not None:
+        yield "body[0].offset_o_m", "has no meaning for the first body, from which the others are counted; leave it out"
+    for k, body in enumerate(scenario.body[1:], start=1):
+        if body.orbit is None and body.offset_o_m is None:
+            yield f"body[{k}]", "has no start: give offset_o_m from the first body, or an orbit of its own"
+
+
+def _names(scenario) -> Found:
+    """Names in results are unique."""
+    named = {
+        "body": [one.name for one in scenario.body],
+        "line": [one.name or f"line_{k}" for k, one in enumerate(scenario.line, start=1)],
+        "software": [one.name or one.law for one in scenario.software],
+        "event": [one.name or one.kind for one in scenario.event],
+    }
+    for table, names in named.items():
+        for k, name in enumerate(names):
+            if name in names[:k]:
+                yield f"{table}[{k}].name", f'must be unique; "{name[:40]}" is {table}[{names.index(name)}] too'
+
+
+def _body_named(scenario, path: str, name: str) -> Found:
+    """The body exists."""
+    known = [one.name for one in scenario.body]
+    if name and name not in known:
+        yield path, f'names no [[body]]: "{name[:40]}"; {nearest(name, known)}'
+
+
+def _lines(scenario) -> Found:
+    """A line ties two bodies that exist."""
+    for k, line in enumerate(scenario.line):
+        yield from _body_named(scenario, f"line[{k}].from_body", line.from_body)
+        yield from _body_named(scenario, f"line[{k}].to_body", line.to_body)
+        if line.from_body == line.to_body:
+            yield f"line[{k}].to_body", "must be another body than from_body"
+
+
+def _software(scenario) -> Found:
+    """A task runs on a rigid body that exists and has what it commands."""
+    for k, task in enumerate(scenario.software):
+        path = f"software[{k}]"
+        unknown = list(_body_named(scenario, f"{path}.body", task.body))
+        yield from unknown
+        if not task.body and len(scenario.body) > 1:
+            yield f"{path}.body", f"is missing: which of {', '.join(one.name for one in scenario.body)[:80]}?"
+        elif not unknown:
+            body = scenario.body[scenario.index_of(task.body)]
+            if body.kind == "point":
+                yield f"{path}.body", f'names "{body.name}", a point mass, which has nothing to command'
+            else:
+                yield from actuators_missing(f"{path}.commands", task.commands, body)
+
+
+def actuators_missing(path: str, commands: Iterable[str], body) -> Found:
+    """Commands for which the body has no actuator."""
+    for command in commands:
+        if not getattr(body, NEEDS[command]):
+            yield path, f'has "{command}", but body "{body.name}" has no [[body.{NEEDS[command]}]]'
+
+
+def _events(scenario) -> Found:
+    """An event watches a body that exists and, for its rate, turns."""
+    for k, event in enumerate(scenario.event):
+        unknown = list(_body_named(scenario, f"event[{k}].body", event.body))
+        yield from unknown
+        if not unknown and event.kind == "rate" and scenario.body[scenario.index_of(event.body)].kind == "point":
+            yield f"event[{k}].body", "is a point mass, which has no angular rate"
+
+
+def _models(scenario) -> Found:
+    """Drag needs air; the field model knows the year, on board too."""
+    for k, body in enumerate(scenario.body):
+        if body.drag is not None and scenario.environment.atmosphere.model == "none":
+            yield f"body[{k}].drag", 'needs air: give [environment.atmosphere] with model = "exponential", "layered" or "msis"'
+        if body.onboard is not None:
+            yield from _field_of(f"body[{k}].onboard.field", body.onboard, scenario.time)
+    model = scenario.environment.field_model()
+    if model is not None:
+        yield from _year("time.start_utc", model, scenario.time)
+
+
+def _field_of(path: str, onboard, span) -> Found:
+    """The model on board exists and knows the year."""
+    from fieldline.environment.field_registry import field_model
+
+    try:
+        model = field_model(onboard.field, degree=onboard.field_degree)
+    except InputError as error:
+        yield path, f"must be a field model with options that it has: {error}"
+        return
+    yield from _year(path, model, span)
+
+
+def _year(path: str, model, span) -> Found:
+    """The model covers the start."""
+    try:
+        model.years_of(span.start)
+    except InputError as error:
+        yield path, f"is outside the field model: {error}"
+
+
+def _lengths(scenario) -> Found:
+    """A bearable number of samples, and a step that the rate allows."""
+    if scenario.time.duration_s is not None:
+        samples = len(scenario.body) * scenario.time.duration_s / scenario.time.output_step_s
+        if samples > MOST_SAMPLES:
+            step = len(scenario.body) * scenario.time.duration_s / MOST_SAMPLES
+            yield "time.output_step_s", f"gives {samples:.3g} samples; the most is {MOST_SAMPLES:g}, which {step:.3g} s keeps to"
+    for k, body in enumerate(scenario.body):
+        coarse = too_coarse(scenario.integrator, fastest_rate(body))
+        if coarse:
+            yield "integrator.step_s", f"{coarse} (body[{k}])"

@@ -1,0 +1,55 @@
+"""Whether a fixed step follows the rotation: the angle that a body, or its nutation, turns in one step.
+
+    rate = max(|omega|, |h| / J_min)                                              (1)
+    angle = rate step,    step that would do = FINE_RAD / rate                    (2)
+
+h is the momentum stored in wheels. The error of rk4 in a step is about angle^5 / 120: at FINE_RAD it is 1e-7 rad, which
+a day of such steps gathers to some hundredths of a radian; at COARSE_RAD the motion is lost within hours.
+"""
+
+from __future__ import annotations
+
+from math import hypot, radians
+
+import numpy as np
+
+FINE_RAD = 0.1
+COARSE_RAD = 0.5
+
+
+def fastest_rate(body) -> float:
+    """Equation (1) [rad/s] at the start of a body; 0 for a point mass."""
+    if body.kind == "point" or body.inertia_kg_m2 is None:
+        return 0.0
+    spin = radians(body.random_rate_deg_s or hypot(*(body.rate_deg_s or (0.0, 0.0, 0.0))))
+    stored = sum((one.momentum_n_m_s * np.array(one.axis_b) for one in body.wheel), np.zeros(3))
+    return max(spin, float(np.linalg.norm(stored)) / float(np.linalg.eigvalsh(body.inertia_kg_m2)[0]))
+
+
+def too_coarse(integrator, rate_rad_s: float) -> str | None:
+    """Why the step cannot follow the rate, with the step that would do; None where it can."""
+    angle = rate_rad_s * integrator.step_s
+    if integrator.method != "rk4" or angle <= COARSE_RAD:
+        return None
+    return f"is too coarse: {_angle(integrator.step_s, rate_rad_s)}; a step of {fine_step(rate_rad_s):.2g} s would do"
+
+
+def rather_coarse(integrator, rate_rad_s: float) -> str | None:
+    """A warning where the step follows the rate poorly, with the step that would do."""
+    angle = rate_rad_s * integrator.step_s
+    if integrator.method != "rk4" or not FINE_RAD < angle <= COARSE_RAD:
+        return None
+    return (
+        f"step_s is coarse for the rotation: {_angle(integrator.step_s, rate_rad_s)}; "
+        f"a step of {fine_step(rate_rad_s):.2g} s would keep a day's error small"
+    )
+
+
+def fine_step(rate_rad_s: float) -> float:
+    """The step [s] of equation (2)."""
+    return FINE_RAD / rate_rad_s
+
+
+def _angle(step_s: float, rate_rad_s: float) -> str:
+    """What a step means at a rate."""
+    return f"at {np.degrees(rate_rad_s):.4g} deg/s a step of {step_s:g} s turns by {np.degrees(rate_rad_s * step_s):.3g} deg"

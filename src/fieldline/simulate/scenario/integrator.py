@@ -1,0 +1,29 @@
+"""How the motion is integrated between the times at which sensors are read and commands change."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from fieldline.records import Record
+
+
+class Integrator(Record):
+    """The table [integrator]: classical Runge-Kutta of a fixed step, or Dormand-Prince 8(5,3) of an error tolerance."""
+
+    method: Literal["rk4", "dop853"] = Field(
+        default="rk4", description='"rk4": fourth order, fixed step; "dop853": eighth order, step chosen by the error'
+    )
+    step_s: float = Field(
+        default=1.0, gt=0.0, description="step of rk4, first trial step of dop853 [s]; steps also end at each reading and command"
+    )
+    step_max_s: float | None = Field(default=None, gt=0.0, description="largest step of dop853 [s]; no limit by default")
+    relative_tolerance: float = Field(default=1e-9, ge=1e-14, le=1e-2, description="error of a step over the state, dop853 [-]")
+    position_tolerance_m: float = Field(default=1e-3, gt=0.0, description="error of a step in position, dop853 [m]")
+    velocity_tolerance_m_s: float = Field(default=1e-6, gt=0.0, description="error of a step in velocity, dop853 [m/s]")
+    angle_tolerance_rad: float = Field(default=1e-9, gt=0.0, description="error of a step in attitude, dop853 [rad]")
+    rate_tolerance_rad_s: float = Field(default=1e-10, gt=0.0, description="error of a step in angular rate, dop853 [rad/s]")
+    field_update: Literal["stage", "step"] = Field(
+        default="stage", description='magnetic field at each stage of a step, or once per "step": faster, first order in the step'
+    )

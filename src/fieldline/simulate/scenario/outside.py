@@ -1,0 +1,159 @@
+"""What a scenario needs from outside itself: orbit files, functions of the user's, laws of the library, models' years."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fieldline.errors import InputError, nearest, shown
+from fieldline.simulate.scenario.checks import actuators_missing
+from fieldline.simulate.scenario.coarseness import fastest_rate, rather_coarse
+
+MOST_STEPS = 1e10
+
+
+def check(scenario) -> list[str]:
+    """Warnings; InputError lists everything that would keep the scenario from running."""
+    found: list[tuple[str, str]] = []
+    states = _collected(found, "orbit", lambda: _states(scenario))
+    found += _functions(scenario)
+    found += _laws(scenario)
+    if states is not None:
+        found += _span(scenario, states)
+    if found:
+        texts = [f"{path}: {text}" for path, text in found]
+        if len(texts) == 1:
+            raise InputError(f"{scenario.name}: {texts[0]}")
+        raise InputError(f"{scenario.name} has {len(texts)} problems:\n  " + "\n  ".join(texts))
+    return list(_warnings(scenario))
+
+
+def _collected(found: list[tuple[str, str]], path: str, make) -> Any:
+    """What `make` gives, or None with its refusal added to what was found."""
+    try:
+        return make()
+    except InputError as error:
+        found.append((path, str(error)))
+        return None
+
+
+def _states(scenario):
+    """States of all bodies at the start."""
+    from fieldline.simulate.scenario.states import start_states
+
+    return start_states(scenario)
+
+
+def duration_s(scenario) -> float:
+    """Length of the run [s]."""
+    from fieldline.simulate.scenario.states import period_s
+
+    return scenario.time.length_s(period_s(*_states(scenario)[0]) if scenario.time.duration_s is None else 0.0)
+
+
+def _span(scenario, states) -> Iterator[tuple[str, str]]:
+    """The field model covers the end; the steps are of a number that ends."""
+    from fieldline.simulate.scenario.states import period_s
+
+    length = scenario.time.length_s(period_s(*states[0]))
+    end = scenario.time.start + np.timedelta64(round(length * 1e9), "ns")
+    model = scenario.environment.field_model()
+    if model is not None:
+        try:
+            model.years_of(end)
+        except InputError as error:
+            yield "time", f"the run ends outside the field model: {error}"
+    if length < scenario.time.output_step_s:
+        yield "time.output_step_s", f"must be at most the run's {length:.6g} s; got {scenario.time.output_step_s:g}."
+    if scenario.integrator.method == "rk4" and length / scenario.integrator.step_s > MOST_STEPS:
+        yield "integrator.step_s", f"gives {length / scenario.integrator.step_s:.2g} steps; the most is {MOST_STEPS:.0g}."
+
+
+def _functions(scenario) -> Iterator[tuple[str, str]]:
+    """Functions of the user's own are where they are said to be."""
+    named = [(f"software[{k}].law", one.law) for k, one in enumerate(scenario.software) if one.is_users]
+    named += [(f"event[{k}].function", one.function) for k, one in enumerate(scenario.event) if one.function]
+    for k, body in enumerate(scenario.body):
+        named += [(f"body[{k}].load[{j}].function", one.function) for j, one in enumerate(body.load)]
+    for path, name in named:
+        place, _, function = name.rpartition(":")
+        if place.endswith(".py"):
+            yield from _in_file(path, scenario.folder / place, function)
+        elif not _module_exists(place):
+            yield path, f'no module "{shown(place)}" is installed; name a file as "file.py:{shown(function)}" instead.'
+
+
+def _in_file(path: str, file: Path, function: str) -> Iterator[tuple[str, str]]:
+    """The file exists, is Python, and defines the function; it is not run."""
+    import ast
+
+    from fieldline.files import read_text
+
+    try:
+        tree = ast.parse(read_text(file, "Python file"))
+    except InputError as error:
+        yield path, str(error)
+        return
+    except (SyntaxError, ValueError, RecursionError) as error:
+        yield path, f'"{file.name}" is no Python: {getattr(error, "msg", error)}, line {getattr(error, "lineno", None)}.'
+        return
+    names = [one.name for one in tree.body if isinstance(one, ast.FunctionDef)]
+    names += [one.id for line in tree.body if isinstance(line, ast.Assign) for one in line.targets if isinstance(one, ast.Name)]
+    if function not in names:
+        yield path, f'"{file.name}" defines no {shown(function)}; {nearest(function, names) if names else "it has no function."}'
+
+
+def _module_exists(name: str) -> bool:
+    """Whether a module can be imported; its parents are."""
+    try:
+        return importlib.util.find_spec(name) is not None
+    except (ImportError, ValueError, AttributeError):
+        return False
+
+
+def known_laws() -> dict[str, Any]:
+    """Laws of the library by name."""
+    from fieldline import control
+
+    return getattr(control, "LAWS", {})
+
+
+def _laws(scenario) -> Iterator[tuple[str, str]]:
+    """Laws of the library exist, know their parameters and find their actuators."""
+    laws = known_laws()
+    for k, task in enumerate(scenario.software):
+        if task.is_users or not laws:
+            continue
+        if task.law not in laws:
+            near = nearest(task.law, laws)
+            yield f"software[{k}].law", f'unknown law "{shown(task.law)}"; {near} Or name your own as "file.py:function".'
+            continue
+        law = laws[task.law]
+        for key in task.parameters:
+            if key not in law.parameters:
+                yield (
+                    f"software[{k}].parameters.{shown(key)}",
+                    f'"{law.name}" has no such parameter; {nearest(key, law.parameters)}',
+                )
+        body = scenario.body[scenario.index_of(task.body)]
+        yield from actuators_missing(f"software[{k}].law", law.commands, body)
+
+
+def _warnings(scenario) -> Iterator[str]:
+    """What runs, but perhaps not as meant."""
+    for k, body in enumerate(scenario.body):
+        coarse = rather_coarse(scenario.integrator, fastest_rate(body))
+        if coarse:
+            yield f"integrator.{coarse} (body[{k}])."
+    for k, task in enumerate(scenario.software):
+        body = scenario.body[scenario.index_of(task.body)]
+        cycle = body.duty_cycle
+        if cycle is not None and task.rate_hz * cycle.period_s > 1.0 + 1e-9:
+            yield (
+                f"software[{k}] is called {task.rate_hz * cycle.period_s:.3g} times in a duty cycle of body[].duty_cycle, "
+                f"{cycle.period_s:g} s: commands of calls in its second part wait for the next."
+            )
