@@ -2,7 +2,7 @@
 
     v_e = R3(theta(t)) N(t) v_i,     theta = theta_0 + theta' t                                             (1)
     N(t_k) = R3(-theta(t_k)) dcm_ei(t_k),     t_k = (k - 1) h                                               (2)
-    f(t) = Lagrange cubic through the nodes k - 1 ... k + 2                                                 (3)
+    f(t) = Lagrange cubic through the four nodes about t                                                    (3)
 
 theta is the Earth rotation angle with the rate of UT1 = UTC, taken out of the nodes because it alone is fast; N is what
 is left of `frames.earth_rotation`: precession and nutation (and, with measured orientation, the drift of UT1 and the
@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from fieldline.environment.cubic import cubic_place
 from fieldline.environment.sun import sun_position_i
 from fieldline.errors import InputError
 from fieldline.frames.earth_orientation import EarthOrientation
@@ -43,20 +44,10 @@ class Ephemeris(NamedTuple):
 
 
 @njit(cache=True)
-def cubic_place(t, step, nodes):
-    """(k, w0, w1, w2, w3): the four nodes k ... k + 3 about time t, and their weights (3); held at the table's ends."""
-    place = min(max(t / step + 1.0, 0.0), nodes - 1.0)
-    k = min(max(int(place), 1), nodes - 3)
-    u = place - k
-    below, above, far = u + 1.0, u - 1.0, u - 2.0
-    return (k - 1, -u * above * far / 6.0, 0.5 * below * above * far, -0.5 * below * u * far, below * u * above / 6.0)
-
-
-@njit(cache=True)
 def dcm_ei_kernel(t, ephemeris):
     """dcm_ei as nine floats, row by row, at t [s]: v_e = matvec(dcm, v_i); equations (1) and (3)."""
     n = ephemeris.intermediate
-    k, w0, w1, w2, w3 = cubic_place(t, ephemeris.node_step_s, n.shape[0])
+    k, (w0, w1, w2, w3) = cubic_place(t / ephemeris.node_step_s + 1.0, n.shape[0])
     angle = ephemeris.era_start + ephemeris.era_rate * t
     c, s = cos(angle), sin(angle)
     xx = w0 * n[k, 0] + w1 * n[k + 1, 0] + w2 * n[k + 2, 0] + w3 * n[k + 3, 0]
@@ -85,7 +76,7 @@ def dcm_ei_kernel(t, ephemeris):
 def sun_kernel(t, ephemeris):
     """The Sun's centre from the Earth's [m] (tuple), GCRS axes, at t [s]; equation (3)."""
     n = ephemeris.sun_i
-    k, w0, w1, w2, w3 = cubic_place(t, ephemeris.node_step_s, n.shape[0])
+    k, (w0, w1, w2, w3) = cubic_place(t / ephemeris.node_step_s + 1.0, n.shape[0])
     return (
         w0 * n[k, 0] + w1 * n[k + 1, 0] + w2 * n[k + 2, 0] + w3 * n[k + 3, 0],
         w0 * n[k, 1] + w1 * n[k + 1, 1] + w2 * n[k + 2, 1] + w3 * n[k + 3, 1],
