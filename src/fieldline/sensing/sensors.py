@@ -78,6 +78,9 @@ class SunSensor(Record):
     field_of_view_deg: float = Field(
         default=90.0, gt=0.0, le=90.0, description="largest angle from the normal that is seen [deg]"
     )
+    albedo: float = Field(
+        default=0.0, ge=0.0, le=1.0, description="share of sunlight that the Earth throws back; 0.3 in the mean [-]"
+    )
     noise_std: float = Field(
         default=0.0, ge=0.0, lt=1.0, description="standard deviation of white noise, 1 at normal incidence [-]"
     )
@@ -91,6 +94,7 @@ class StarTracker(Record):
 
     rate_hz: float = _rate("attitudes")
     phase_s: float = _phase()
+    offset_arcsec: Vector = Field(default=NONE, description="constant error about each body axis [arcsec]")
     noise_std_arcsec: Spread = Field(default=NONE, description="standard deviation of the error about each body axis [arcsec]")
     boresight_b: Direction = Field(default=(0.0, 0.0, 1.0), description="where it looks, body axes")
     rate_max_deg_s: float = Field(default=0.0, ge=0.0, description="rate above which it gives nothing [deg/s]; 0: no limit")
@@ -103,6 +107,12 @@ class StarTracker(Record):
         ge=0.0,
         lt=180.0,
         description="angle to the Earth's limb below which it gives nothing [deg]; 0: the Earth itself",
+    )
+    earth_exclusion_deg: float | None = Field(
+        default=None,
+        ge=0.0,
+        lt=90.0,
+        description="angle to the Earth's limb below which it gives nothing [deg]; never by default",
     )
 
 

@@ -9,6 +9,10 @@ from pydantic import Field, model_validator
 from fieldline.records import Record, RecordError
 from fieldline.records.values import Vector
 
+NUMBERS = {
+    "exponential": ("reference_density_kg_m3", "reference_altitude_km", "scale_height_km"),
+    "msis": ("f107", "f107_average", "ap"),
+}  # what each model of the air needs
 Vectors = Annotated[tuple[Vector, ...], Field(strict=False)]
 
 
@@ -20,25 +24,36 @@ class Atmosphere(Record):
         description='"exponential": one scale height; "layered": the standard table of scale heights by altitude; '
         '"msis": NRLMSIS 2.1 through pymsis, as a table made before the run',
     )
-    reference_density_kg_m3: float | None = Field(default=None, gt=0.0, description="density at the reference altitude [kg/m^3]")
-    reference_altitude_km: float | None = Field(default=None, ge=0.0, description="altitude of that density [km]")
-    scale_height_km: float | None = Field(default=None, gt=0.0, description="altitude over which the density falls by e [km]")
-    f107: float = Field(
-        default=150.0, ge=50.0, le=500.0, description="solar radio flux of the day before, for msis [1e-22 W/m^2/Hz]"
+    reference_density_kg_m3: float | None = Field(
+        default=None, gt=0.0, le=10.0, description="exponential: density at the reference altitude [kg/m^3]"
     )
-    f107_average: float = Field(default=150.0, ge=50.0, le=500.0, description="its mean over 81 days, for msis [1e-22 W/m^2/Hz]")
-    ap: float = Field(default=4.0, ge=0.0, le=400.0, description="geomagnetic activity index Ap, for msis [-]")
+    reference_altitude_km: float | None = Field(
+        default=None, ge=0.0, le=10_000.0, description="exponential: altitude of that density, over WGS 84 [km]"
+    )
+    scale_height_km: float | None = Field(
+        default=None, ge=1.0, le=1000.0, description="exponential: altitude over which the density falls by e [km]"
+    )
+    f107: float | None = Field(
+        default=None, ge=65.0, le=300.0, description="msis: solar radio flux of the day before [1e-22 W/m^2/Hz]"
+    )
+    f107_average: float | None = Field(
+        default=None, ge=65.0, le=300.0, description="msis: its mean over 81 days [1e-22 W/m^2/Hz]"
+    )
+    ap: float | None = Field(
+        default=None, ge=0.0, le=400.0, description="msis: daily planetary index Ap, 4 quiet, 50 a storm [-]"
+    )
 
     @model_validator(mode="after")
     def _parameters_fit(self):
-        """The exponential needs its three numbers, the others take none of them."""
+        """A model has all of its numbers and none of another's."""
         found = []
-        for key in ("reference_density_kg_m3", "reference_altitude_km", "scale_height_km"):
-            given = getattr(self, key) is not None
-            if self.model == "exponential" and not given:
-                found.append((key, 'is missing: model = "exponential" needs it'))
-            if self.model != "exponential" and given:
-                found.append((key, f'has no meaning for model = "{self.model}"; leave it out, or choose "exponential"'))
+        for model, keys in NUMBERS.items():
+            for key in keys:
+                given = getattr(self, key) is not None
+                if model == self.model and not given:
+                    found.append((key, f'is missing: model = "{model}" needs it'))
+                if model != self.model and given:
+                    found.append((key, f'has no meaning for model = "{self.model}"; leave it out, or choose "{model}"'))
         if found:
             raise RecordError(found)
         return self
@@ -63,7 +78,9 @@ class Environment(Record):
     gravity: Literal["point", "j2", "harmonic"] = Field(
         default="j2", description="a point mass, with the oblateness (J2), or with harmonics to gravity_degree"
     )
-    gravity_degree: int | None = Field(default=None, ge=2, le=200, description='highest degree for gravity = "harmonic"')
+    gravity_degree: int | None = Field(
+        default=None, ge=2, le=70, description='highest degree for gravity = "harmonic"; 20 by default'
+    )
     atmosphere: Atmosphere = Field(default=Atmosphere(), description="density of the air, for drag")
     earth_orientation: str | None = Field(
         default=None,
@@ -73,10 +90,8 @@ class Environment(Record):
 
     @model_validator(mode="after")
     def _fits_together(self):
-        """One field, of options it has; a degree where harmonics are asked for."""
+        """One field, of options it has; a degree of gravity where it has harmonics."""
         found = []
-        if self.gravity == "harmonic" and self.gravity_degree is None:
-            found.append(("gravity_degree", 'is missing: gravity = "harmonic" needs it, for example 20'))
         if self.gravity != "harmonic" and self.gravity_degree is not None:
             found.append(("gravity_degree", f'has no meaning for gravity = "{self.gravity}"; choose "harmonic"'))
         options = [key for key in type(self).model_fields if key.startswith("field_") and getattr(self, key) is not None]

@@ -7,10 +7,18 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from fieldline.records import Record, RecordError
+from fieldline.records.words import came
 from fieldline.vehicle.user_load import is_function_name
 
 Command = Literal["dipole", "wheel_torque", "thrust"]
 ORDER = ("dipole", "wheel_torque", "thrust")
+
+
+def _numeric(value: Any) -> bool:
+    """Whether a value is a finite number or a list of them."""
+    if isinstance(value, list | tuple):
+        return all(_numeric(one) for one in value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
 
 
 class Software(Record):
@@ -28,7 +36,8 @@ class Software(Record):
     phase_s: float = Field(default=0.0, ge=0.0, description="time of the first call after the start [s]")
     delay_s: float = Field(default=0.0, ge=0.0, description="time from a call to when its command acts [s], below one period")
     parameters: dict[str, Any] = Field(
-        default={}, description="the law's own parameters; what is not given is derived or default"
+        default={},
+        description="the law's own parameters by name; for a law of your own: numbers, handed over as an array in this order",
     )
     commands: Annotated[tuple[Command, ...], Field(strict=False)] = Field(
         default=(), description="for a law of the user's own: what it returns, in the order dipole, wheel_torque, thrust"
@@ -56,7 +65,13 @@ class Software(Record):
             found.append(("commands", 'is missing: a law of your own says what it returns, for example commands = ["dipole"]'))
         if self.role == "estimator" and self.commands:
             found.append(("commands", "has no meaning for an estimator, which returns attitude and rate; leave it out"))
-        if not self.is_users:
+        if self.is_users:
+            found += [
+                (f"parameters.{key}", f"must be a number or a list of numbers; got {came(value)}")
+                for key, value in self.parameters.items()
+                if not _numeric(value)
+            ]
+        else:
             given = [key for key in ("commands", "memory") if getattr(self, key)]
             found += [(key, "has a meaning for a law of your own alone; this one knows it") for key in given]
         if found:
