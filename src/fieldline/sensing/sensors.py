@@ -84,9 +84,6 @@ class SunSensor(Record):
     noise_std: float = Field(
         default=0.0, ge=0.0, lt=1.0, description="standard deviation of white noise, 1 at normal incidence [-]"
     )
-    albedo: float = Field(
-        default=0.0, ge=0.0, le=1.0, description="part of sunlight that the ground below sends back [-]; 0: none"
-    )
 
 
 class StarTracker(Record):
@@ -98,7 +95,6 @@ class StarTracker(Record):
     noise_std_arcsec: Spread = Field(default=NONE, description="standard deviation of the error about each body axis [arcsec]")
     boresight_b: Direction = Field(default=(0.0, 0.0, 1.0), description="where it looks, body axes")
     rate_max_deg_s: float = Field(default=0.0, ge=0.0, description="rate above which it gives nothing [deg/s]; 0: no limit")
-    offset_arcsec: Vector = Field(default=NONE, description="constant error about each body axis [arcsec]")
     sun_exclusion_deg: float = Field(
         default=0.0, ge=0.0, lt=180.0, description="angle to the Sun below which it gives nothing [deg]"
     )
@@ -107,12 +103,6 @@ class StarTracker(Record):
         ge=0.0,
         lt=180.0,
         description="angle to the Earth's limb below which it gives nothing [deg]; 0: the Earth itself",
-    )
-    earth_exclusion_deg: float | None = Field(
-        default=None,
-        ge=0.0,
-        lt=90.0,
-        description="angle to the Earth's limb below which it gives nothing [deg]; never by default",
     )
 
 
