@@ -21,8 +21,8 @@ from numba import njit
 
 from fieldline.frames.matrices import matvec
 from fieldline.frames.vectors import add, axpy, put, vec
-from fieldline.sensing.reading import digits, nine, noise3
 from fieldline.sensing.measurement import GYRO, RATE
+from fieldline.sensing.reading import digits, nine, noise3
 
 
 class GyroParams(NamedTuple):

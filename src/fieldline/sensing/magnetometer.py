@@ -18,8 +18,8 @@ from numba import njit
 
 from fieldline.frames.matrices import matvec
 from fieldline.frames.vectors import add, vec
-from fieldline.sensing.reading import digits, nine, noise3
 from fieldline.sensing.measurement import FIELD
+from fieldline.sensing.reading import digits, nine, noise3
 
 
 class MagnetometerParams(NamedTuple):

@@ -15,8 +15,8 @@ import numpy as np
 from numba import njit
 
 from fieldline.frames.vectors import add, axpy, cross, scale, unit, vec
-from fieldline.sensing.reading import noise3
 from fieldline.sensing.measurement import ORBIT
+from fieldline.sensing.reading import noise3
 
 
 class NavigationParams(NamedTuple):

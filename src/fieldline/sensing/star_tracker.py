@@ -21,8 +21,8 @@ from numba import njit
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M
 from fieldline.frames.attitude import quat_exp, quat_mul
 from fieldline.frames.vectors import add, cross, dot, norm, scale, vec
-from fieldline.sensing.reading import noise3
 from fieldline.sensing.measurement import ATTITUDE
+from fieldline.sensing.reading import noise3
 
 
 class StarTrackerParams(NamedTuple):
