@@ -89,6 +89,7 @@ def section_of(given: Given, loop: Loop, metal: Conductor, resistivity: float, l
                 f"insulation {insulation_kg:.4g} kg. Allow more, or take a thinner core."
             )
         return wire_kg / (length * metal.density_kg_m3)  # (17)
+    assert given.mass_per_watt_kg is not None
     return loop.ampere_turns * sqrt(given.mass_per_watt_kg * resistivity / metal.density_kg_m3)
 
 
