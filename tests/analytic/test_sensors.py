@@ -3,7 +3,6 @@
 import subprocess
 import sys
 from math import acos, cos, radians, sin
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -29,13 +28,8 @@ IDENTITY = (0.0, 0.0, 0.0, 1.0)
 DRAWS = 20_000
 
 
-def body(**sensors):
-    kinds = dict.fromkeys(("magnetometer", "gyro", "sun_sensor", "star_tracker", "navigation"))
-    return SimpleNamespace(**(kinds | sensors))
-
-
 def magnetometer(**keys):
-    return suite([body(), body(magnetometer=Magnetometer(rate_hz=1, **keys))]).magnetometer
+    return suite(2, magnetometers=[None, Magnetometer(rate_hz=1, **keys)]).magnetometers
 
 
 def field_readings(params, fields, dipole=NO_DIPOLE, seed=0):
@@ -69,13 +63,13 @@ def test_the_magnetometer_reads_gain_bias_and_the_torquers_field():
 
 
 def test_a_body_without_the_sensor_reads_nothing():
-    empty = suite([body()])
+    empty = suite(1)
     out, rng, v = new_measurement(), np.random.default_rng(0), (1.0, 0.0, 0.0)
-    read_magnetometer(0.0, v, v, empty.magnetometer, 0, rng, out)
-    read_gyro(v, 1.0, empty.gyro, np.zeros((1, 3)), 0, rng, out)
-    read_sun_sensor(v, 1.0, v, empty.sun_sensor, 0, rng, out)
-    read_star_tracker(IDENTITY, v, v, 1.0, v, empty.star_tracker, 0, rng, out)
-    read_navigation(v, v, empty.navigation, 0, rng, out)
+    read_magnetometer(0.0, v, v, empty.magnetometers, 0, rng, out)
+    read_gyro(v, 1.0, empty.gyros, np.zeros((1, 3)), 0, rng, out)
+    read_sun_sensor(v, 1.0, v, empty.sun_sensors, 0, rng, out)
+    read_star_tracker(IDENTITY, v, v, 1.0, v, empty.star_trackers, 0, rng, out)
+    read_navigation(v, v, empty.navigations, 0, rng, out)
     assert not out.valid.any() and np.isnan(out.field_b).all() and np.isnan(out.q_bi).all()
     assert rng.random() == np.random.default_rng(0).random()  # nothing was drawn
 
@@ -130,11 +124,9 @@ def test_switching_one_noise_off_leaves_the_others_as_they_were():
 
 
 def test_the_gyro_reads_gain_bias_digits_and_range():
-    params = suite(
-        [body(gyro=Gyro(rate_hz=1, gain=GAIN, bias_deg_s=(1.0, -1.0, 0.5), quantum_deg_s=0.01, range_deg_s=10.0))]
-    ).gyro
+    params = suite(1, gyros=[Gyro(rate_hz=1, gain=GAIN, bias_deg_s=(1.0, -1.0, 0.5), quantum_deg_s=0.01, range_deg_s=10.0)]).gyros
     rate, out = np.radians([3.0, -9.9, 4.0]), new_measurement()
-    read_gyro(tuple(rate), 0.0, params, np.zeros((1, 3)), 0, np.random.default_rng(0), out)
+    read_gyro(tuple(rate), 0.0, params, params.bias.copy(), 0, np.random.default_rng(0), out)
     raw = np.array(GAIN) @ np.degrees(rate) + [1.0, -1.0, 0.5]
     assert np.degrees(out.rate_b) == pytest.approx(np.clip(0.01 * np.rint(raw / 0.01), -10.0, 10.0), rel=1e-12)
     assert np.degrees(out.rate_b[1]) == pytest.approx(-10.0)
@@ -143,7 +135,7 @@ def test_the_gyro_reads_gain_bias_digits_and_range():
 
 
 def test_an_estimators_rate_is_not_replaced_by_the_gyros():
-    params, out = suite([body(gyro=Gyro(rate_hz=1))], rate_estimated=[True]).gyro, new_measurement()
+    params, out = suite(1, gyros=[Gyro(rate_hz=1)], rate_estimated=[True]).gyros, new_measurement()
     out.omega_bi_b[:] = 7.0
     read_gyro((1.0, 2.0, 3.0), 0.0, params, np.zeros((1, 3)), 0, np.random.default_rng(0), out)
     assert list(out.omega_bi_b) == [7.0] * 3 and out.valid[RATE] == 0.0 and list(out.rate_b) == [1.0, 2.0, 3.0]
@@ -151,24 +143,24 @@ def test_an_estimators_rate_is_not_replaced_by_the_gyros():
 
 def test_the_gyros_walk_grows_with_the_root_of_time_whatever_the_step():
     for dt, steps in ((0.25, 40), (2.5, 4)):
-        params = suite([body(gyro=Gyro(rate_hz=1, bias_walk_deg_s_sqrt_s=(0.1, 0.2, 0.0)))]).gyro
+        params = suite(1, gyros=[Gyro(rate_hz=1, bias_walk_deg_s_sqrt_s=(0.1, 0.2, 0.0))]).gyros
         rng, out, ends = np.random.default_rng(5), new_measurement(), []
         for _ in range(1000):
-            walk = np.zeros((1, 3))
+            bias = np.zeros((1, 3))
             for _ in range(steps):
-                read_gyro((0.0, 0.0, 0.0), dt, params, walk, 0, rng, out)
-            assert np.array_equal(out.rate_b, walk[0])
-            ends.append(np.degrees(walk[0]))
+                read_gyro((0.0, 0.0, 0.0), dt, params, bias, 0, rng, out)
+            assert np.array_equal(out.rate_b, bias[0])
+            ends.append(np.degrees(bias[0]))
         expected = np.sqrt(dt * steps) * np.array([0.1, 0.2, 0.0])
         assert np.std(ends, axis=0) == pytest.approx(expected, rel=0.08)
         assert np.abs(np.mean(ends, axis=0)).max() < 4.0 * 0.2 * np.sqrt(dt * steps / 1000)
 
 
 def test_the_gyros_noise_is_white_with_its_spread():
-    params = suite([body(gyro=Gyro(rate_hz=1, noise_std_deg_s=(0.01, 0.02, 0.03)))]).gyro
-    rng, out, walk, rows = np.random.default_rng(6), new_measurement(), np.zeros((1, 3)), np.empty((5000, 3))
+    params = suite(1, gyros=[Gyro(rate_hz=1, noise_std_deg_s=(0.01, 0.02, 0.03))]).gyros
+    rng, out, bias, rows = np.random.default_rng(6), new_measurement(), np.zeros((1, 3)), np.empty((5000, 3))
     for row in rows:
-        read_gyro((0.0, 0.0, 0.0), 1.0, params, walk, 0, rng, out)
+        read_gyro((0.0, 0.0, 0.0), 1.0, params, bias, 0, rng, out)
         row[:] = np.degrees(out.rate_b)
     assert rows.std(axis=0) == pytest.approx([0.01, 0.02, 0.03], rel=0.05)
     assert abs(np.corrcoef(rows[1:, 0], rows[:-1, 0])[0, 1]) < 0.06
@@ -180,7 +172,7 @@ ABOVE = (0.0, 0.0, RADIUS + 500e3)
 
 
 def sun_reading(sun_b, sunlit=1.0, position_b=ABOVE, seed=0, **keys):
-    params = suite([body(sun_sensor=SunSensor(rate_hz=1)), body(sun_sensor=SunSensor(rate_hz=1, **keys))]).sun_sensor
+    params = suite(2, sun_sensors=[SunSensor(rate_hz=1), SunSensor(rate_hz=1, **keys)]).sun_sensors
     out = new_measurement(6)
     read_sun_sensor(sun_b, sunlit, position_b, params, 1, np.random.default_rng(seed), out)
     assert out.valid[SUN] == 1.0
@@ -213,7 +205,7 @@ def test_the_ground_below_lights_the_face_that_looks_at_it_by_day():
 
 
 def test_the_sun_sensors_noise_has_its_spread():
-    params = suite([body(sun_sensor=SunSensor(rate_hz=1, noise_std=0.02))]).sun_sensor
+    params = suite(1, sun_sensors=[SunSensor(rate_hz=1, noise_std=0.02)]).sun_sensors
     rng, out = np.random.default_rng(8), new_measurement(6)
     readings = []
     for _ in range(5000):
@@ -231,7 +223,7 @@ Q = np.array([0.1, -0.5, 0.7, 0.3]) / np.sqrt(0.84)
 
 
 def star_reading(rate=NO_DIPOLE, sun=(0.0, 0.0, -1.0), sunlit=1.0, position=(0.0, 0.0, HEIGHT), seed=0, **keys):
-    params, out = suite([body(star_tracker=StarTracker(rate_hz=1, **keys))]).star_tracker, new_measurement()
+    params, out = suite(1, star_trackers=[StarTracker(rate_hz=1, **keys)]).star_trackers, new_measurement()
     read_star_tracker(tuple(Q), rate, sun, sunlit, position, params, 0, np.random.default_rng(seed), out)
     assert np.isnan(out.q_bi).all() == (out.valid[ATTITUDE] == 0.0)
     return out
@@ -245,7 +237,7 @@ def test_a_perfect_tracker_reads_the_attitude_and_a_bent_one_its_offset():
 
 
 def test_the_trackers_error_has_its_spread_about_each_body_axis():
-    params = suite([body(star_tracker=StarTracker(rate_hz=1, noise_std_arcsec=(5.0, 6.0, 40.0)))]).star_tracker
+    params = suite(1, star_trackers=[StarTracker(rate_hz=1, noise_std_arcsec=(5.0, 6.0, 40.0))]).star_trackers
     rng, out, rows = np.random.default_rng(9), new_measurement(), np.empty((5000, 4))
     for row in rows:
         read_star_tracker(tuple(Q), NO_DIPOLE, (0.0, 0.0, -1.0), 1.0, (0.0, 0.0, HEIGHT), params, 0, rng, out)
@@ -288,7 +280,7 @@ def test_the_earth_itself_hides_the_stars_without_any_exclusion():
 
 
 def test_an_outage_leaves_the_noise_after_it_as_it_was():
-    params = suite([body(star_tracker=StarTracker(rate_hz=1, noise_std_arcsec=(5.0, 5.0, 5.0), rate_max_deg_s=1.0))]).star_tracker
+    params = suite(1, star_trackers=[StarTracker(rate_hz=1, noise_std_arcsec=(5.0, 5.0, 5.0), rate_max_deg_s=1.0)]).star_trackers
     seconds = []
     for first_rate in (0.0, 1.0):
         rng, out = np.random.default_rng(2), new_measurement()
@@ -303,7 +295,7 @@ def test_an_outage_leaves_the_noise_after_it_as_it_was():
 
 def test_the_orbits_offset_is_along_the_track_against_the_normal_and_down():
     position, velocity = (7e6, 0.0, 0.0), (100.0, 7500.0, 0.0)
-    params, out = suite([body(navigation=Navigation(position_offset_o_m=(1000.0, 20.0, 3.0)))]).navigation, new_measurement()
+    params, out = suite(1, navigations=[Navigation(position_offset_o_m=(1000.0, 20.0, 3.0))]).navigations, new_measurement()
     read_navigation(position, velocity, params, 0, np.random.default_rng(0), out)
     assert out.position_i - position == pytest.approx([-3.0, 1000.0, -20.0], abs=1e-8)
     assert list(out.velocity_i) == list(velocity) and out.valid[ORBIT] == 1.0
@@ -312,14 +304,14 @@ def test_the_orbits_offset_is_along_the_track_against_the_normal_and_down():
 def test_a_vertical_fall_is_known_where_no_offset_asks_for_axes():
     out = new_measurement()
     read_navigation(
-        (7e6, 0.0, 0.0), (-1.0, 0.0, 0.0), suite([body(navigation=Navigation())]).navigation, 0, np.random.default_rng(0), out
+        (7e6, 0.0, 0.0), (-1.0, 0.0, 0.0), suite(1, navigations=[Navigation()]).navigations, 0, np.random.default_rng(0), out
     )
     assert list(out.position_i) == [7e6, 0.0, 0.0]
 
 
 def test_the_orbits_noise_has_its_spread():
     record = Navigation(position_noise_std_m=(1.0, 2.0, 3.0), velocity_noise_std_m_s=(0.01, 0.02, 0.03))
-    params, rng, out = suite([body(navigation=record)]).navigation, np.random.default_rng(3), new_measurement()
+    params, rng, out = suite(1, navigations=[record]).navigations, np.random.default_rng(3), new_measurement()
     rows = np.empty((5000, 6))
     for row in rows:
         read_navigation((7e6, 0.0, 0.0), (0.0, 7.5e3, 0.0), params, 0, rng, out)
@@ -333,39 +325,41 @@ def test_the_orbits_noise_has_its_spread():
 
 def test_the_tables_are_in_si_and_no_limit_is_infinite():
     tables = suite(
-        [body(magnetometer=Magnetometer(rate_hz=1, bias_nt=(1.0, 2.0, 3.0), noise_std_nt=4.0)), body(gyro=Gyro(rate_hz=1))]
+        2, magnetometers=[Magnetometer(rate_hz=1, bias_nt=(1.0, 2.0, 3.0), noise_std_nt=4.0), None], gyros=[None, Gyro(rate_hz=1)]
     )
     assert (
-        tables.magnetometer.bias[0] == pytest.approx([1e-9, 2e-9, 3e-9]) and list(tables.magnetometer.noise_std[0]) == [4e-9] * 3
+        tables.magnetometers.bias[0] == pytest.approx([1e-9, 2e-9, 3e-9])
+        and list(tables.magnetometers.noise_std[0]) == [4e-9] * 3
     )
-    assert np.isinf(tables.magnetometer.limit).all() and np.isinf(tables.gyro.limit).all()
-    assert list(tables.magnetometer.present) == [1, 0] and list(tables.gyro.present) == [0, 1]
-    assert list(tables.sun_sensor.start) == [0, 0, 0] and tables.sun_sensor.normal.shape == (0, 3)
+    assert np.isinf(tables.magnetometers.limit).all() and np.isinf(tables.gyros.limit).all()
+    assert list(tables.magnetometers.present) == [1, 0] and list(tables.gyros.present) == [0, 1]
+    assert list(tables.sun_sensors.start) == [0, 0, 0] and tables.sun_sensors.normal.shape == (0, 3)
     for table in tables:
         for array in table:
             assert array.flags["C_CONTIGUOUS"] and array.dtype in (np.float64, np.int64)
 
 
-def test_a_flag_for_each_body_is_asked_for():
-    with pytest.raises(InputError, match="each of the 2 bodies; got 1"):
-        suite([body(), body()], rate_estimated=[True])
+def test_an_entry_for_each_body_is_asked_for():
+    with pytest.raises(InputError, match="gyros needs one entry for each of the 2 bodies; got 3"):
+        suite(2, gyros=[None, None, None])
+    with pytest.raises(InputError, match="rate_estimated needs one entry for each of the 2 bodies; got 1"):
+        suite(2, rate_estimated=[True])
 
 
 BITS = """
 import numpy as np
-from types import SimpleNamespace
 from fieldline.sensing.gyro import read_gyro
 from fieldline.sensing.magnetometer import read_magnetometer
 from fieldline.sensing.measurement import new_measurement
 from fieldline.sensing.sensors import Gyro, Magnetometer
 from fieldline.sensing.suite import suite
-s = suite([SimpleNamespace(magnetometer=Magnetometer(rate_hz=1, noise_std_nt=10.0, quantum_nt=0.5), sun_sensor=None,
-    gyro=Gyro(rate_hz=1, noise_std_deg_s=0.1, bias_walk_deg_s_sqrt_s=0.01), star_tracker=None, navigation=None)])
-rng, out, walk = np.random.default_rng(12), new_measurement(), np.zeros((1, 3))
+s = suite(1, magnetometers=[Magnetometer(rate_hz=1, noise_std_nt=10.0, quantum_nt=0.5)],
+    gyros=[Gyro(rate_hz=1, noise_std_deg_s=0.1, bias_walk_deg_s_sqrt_s=0.01)])
+rng, out, bias = np.random.default_rng(12), new_measurement(), np.zeros((1, 3))
 total = b""
 for i in range(2000):
-    read_magnetometer(float(i), (1e-5, 2e-5, -3e-5), (0.0, 0.0, 0.0), s.magnetometer, 0, rng, out)
-    read_gyro((0.01, 0.02, 0.03), 0.1, s.gyro, walk, 0, rng, out)
+    read_magnetometer(float(i), (1e-5, 2e-5, -3e-5), (0.0, 0.0, 0.0), s.magnetometers, 0, rng, out)
+    read_gyro((0.01, 0.02, 0.03), 0.1, s.gyros, bias, 0, rng, out)
     total += out.field_b.tobytes() + out.rate_b.tobytes()
 import hashlib
 print(hashlib.sha256(total).hexdigest())

@@ -1,7 +1,5 @@
 """Laws of readings: digits and ranges for any value, faces for any Sun, blinding the same in any axes."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -30,14 +28,10 @@ directions = (
 )
 
 
-def body(**sensors):
-    return SimpleNamespace(**(dict.fromkeys(("magnetometer", "gyro", "sun_sensor", "star_tracker", "navigation")) | sensors))
-
-
-SIX = suite([body(sun_sensor=SunSensor(rate_hz=1, albedo=0.3))]).sun_sensor
+SIX = suite(1, sun_sensors=[SunSensor(rate_hz=1, albedo=0.3)]).sun_sensors
 TRACKER = suite(
-    [body(star_tracker=StarTracker(rate_hz=1, boresight_b=(0.6, 0.0, 0.8), sun_exclusion_deg=35.0, earth_exclusion_deg=12.0))]
-).star_tracker
+    1, star_trackers=[StarTracker(rate_hz=1, boresight_b=(0.6, 0.0, 0.8), sun_exclusion_deg=35.0, earth_exclusion_deg=12.0)]
+).star_trackers
 
 
 @QUICK

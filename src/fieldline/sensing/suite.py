@@ -27,34 +27,47 @@ RAD_PER_DEG = pi / 180.0
 class Suite(NamedTuple):
     """Every sensor of every body."""
 
-    magnetometer: MagnetometerParams
-    gyro: GyroParams
-    sun_sensor: SunSensorParams
-    star_tracker: StarTrackerParams
-    navigation: NavigationParams
+    magnetometers: MagnetometerParams
+    gyros: GyroParams
+    sun_sensors: SunSensorParams
+    star_trackers: StarTrackerParams
+    navigations: NavigationParams
 
 
-def suite(bodies: Sequence, rate_estimated: Sequence[bool] | None = None) -> Suite:
-    """Tables of the sensors of `bodies`.
+def suite(
+    count: int,
+    *,
+    magnetometers: Sequence | None = None,
+    gyros: Sequence | None = None,
+    sun_sensors: Sequence | None = None,
+    star_trackers: Sequence | None = None,
+    navigations: Sequence | None = None,
+    rate_estimated: Sequence[bool] | None = None,
+) -> Suite:
+    """Tables of the sensors of `count` bodies.
 
     Parameters
     ----------
-    bodies : records with the keys magnetometer, gyro, sun_sensor, star_tracker and navigation, each a record of
-        `fieldline.sensing.sensors` or None.
+    magnetometers ... navigations : one a body, a record of `fieldline.sensing.sensors` or None; a kind left out is
+        carried by no body.
     rate_estimated : one a body: True where an estimator says the rate known on board, so that the gyro's reading is not
         taken for it.
 
-    Errors: InputError where rate_estimated has not one entry a body.
+    Errors: InputError where a sequence has not one entry a body.
     """
-    estimated = [False] * len(bodies) if rate_estimated is None else list(rate_estimated)
-    if len(estimated) != len(bodies):
-        raise InputError(f"rate_estimated needs one entry for each of the {len(bodies)} bodies; got {len(estimated)}.")
+
+    def each(name: str, given: Sequence | None, default) -> list:
+        entries = [default] * count if given is None else list(given)
+        if len(entries) != count:
+            raise InputError(f"{name} needs one entry for each of the {count} bodies; got {len(entries)}.")
+        return entries
+
     return Suite(
-        magnetometer=_magnetometer([body.magnetometer for body in bodies]),
-        gyro=_gyro([body.gyro for body in bodies], estimated),
-        sun_sensor=_sun_sensor([body.sun_sensor for body in bodies]),
-        star_tracker=_star_tracker([body.star_tracker for body in bodies]),
-        navigation=_navigation([body.navigation for body in bodies]),
+        magnetometers=_magnetometers(each("magnetometers", magnetometers, None)),
+        gyros=_gyros(each("gyros", gyros, None), each("rate_estimated", rate_estimated, False)),
+        sun_sensors=_sun_sensors(each("sun_sensors", sun_sensors, None)),
+        star_trackers=_star_trackers(each("star_trackers", star_trackers, None)),
+        navigations=_navigations(each("navigations", navigations, None)),
     )
 
 
@@ -83,7 +96,7 @@ def _present(records: list) -> np.ndarray:
     return np.array([0.0 if record is None else 1.0 for record in records])
 
 
-def _magnetometer(records: list) -> MagnetometerParams:
+def _magnetometers(records: list) -> MagnetometerParams:
     """The table of magnetometers [T]."""
     return MagnetometerParams(
         present=_present(records),
@@ -96,7 +109,7 @@ def _magnetometer(records: list) -> MagnetometerParams:
     )
 
 
-def _gyro(records: list, estimated: list) -> GyroParams:
+def _gyros(records: list, estimated: list) -> GyroParams:
     """The table of gyros [rad/s]."""
     return GyroParams(
         present=_present(records),
@@ -110,7 +123,7 @@ def _gyro(records: list, estimated: list) -> GyroParams:
     )
 
 
-def _sun_sensor(records: list) -> SunSensorParams:
+def _sun_sensors(records: list) -> SunSensorParams:
     """The table of faces, body after body."""
     faces = [0 if record is None else len(record.normals_b) for record in records]
     owner = [record for record, number in zip(records, faces, strict=True) for _ in range(number)]
@@ -129,7 +142,7 @@ def _cosine_deg(angle_deg: float) -> float:
     return 0.0 if angle_deg == 90.0 else cos(radians(angle_deg))
 
 
-def _star_tracker(records: list) -> StarTrackerParams:
+def _star_trackers(records: list) -> StarTrackerParams:
     """The table of star trackers [rad]."""
     return StarTrackerParams(
         present=_present(records),
@@ -142,7 +155,7 @@ def _star_tracker(records: list) -> StarTrackerParams:
     )
 
 
-def _navigation(records: list) -> NavigationParams:
+def _navigations(records: list) -> NavigationParams:
     """The table of what is known of the orbit."""
     return NavigationParams(
         present=_present(records),
