@@ -1,0 +1,152 @@
+"""One explicit Runge-Kutta step of the plant, with the attitude advanced on its own manifold.
+
+    z = (r, v, sigma = 0, omega, ...),   z1 by the method's stages of `plant_rates`,   q1 = q0 exp(sigma1 / 2)   (1)
+
+A quaternion stays a unit quaternion to rounding, and a body that turns at a constant rate is integrated without error
+however far it turns in a step (Munthe-Kaas). What limits the step is the change of the rate and of the field within it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from fieldline.dynamics.parameters import STATE, TANGENT, Plant, state_size, tangent_size
+from fieldline.dynamics.rates import freeze_fields, plant_rates, store, three
+from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit
+from fieldline.integrate.steps import combine
+
+
+class Work(NamedTuple):
+    """Arrays that a step writes: n numbers of z, m evaluations."""
+
+    k: np.ndarray  # (m, n)
+    z: np.ndarray  # (n,) at the step's start
+    z1: np.ndarray  # (n,) at its end
+    stage: np.ndarray  # (n,)
+    scale: np.ndarray  # (n,) error allowed
+    dense: np.ndarray  # (7, n) coefficients of the state within the step
+    start: np.ndarray  # (bodies, 4) attitudes at the step's start
+    frozen: np.ndarray  # (bodies, 3) field in mid-step
+    log: np.ndarray  # (0, bodies, 6), or (loads, bodies, 6) to keep every load
+
+
+class Shared(NamedTuple):
+    """Arrays through which compiled code and a user's functions meet."""
+
+    outer: np.ndarray  # (bodies, 6) forces_i and torques_b of lines and of the user's loads
+    state: np.ndarray  # (13,) state of the body that a user's load acts on
+    reply: np.ndarray  # (64,) what a plain Python function answered
+    replies: np.ndarray  # (1,) int64, how many numbers that is
+    commands: np.ndarray  # (actuators,) what a law commands
+    culprit: np.ndarray  # (2,) int64: the task or load at fault, and how many numbers it returned
+
+
+def new_work(plant: Plant, evaluations: int, loads: int = 0) -> Work:
+    """Arrays for a plant and a method of so many evaluations; `loads` rows of log."""
+    n, bodies = tangent_size(plant), len(plant.bodies.mass)
+    return Work(
+        k=np.zeros((evaluations, n)),
+        z=np.zeros(n),
+        z1=np.zeros(n),
+        stage=np.zeros(n),
+        scale=np.ones(n),
+        dense=np.zeros((7, n)),
+        start=np.zeros((bodies, 4)),
+        frozen=np.zeros((bodies, 3)),
+        log=np.zeros((loads, bodies, 6)),
+    )
+
+
+def new_shared(plant: Plant) -> Shared:
+    """Arrays for a plant's users' functions."""
+    return Shared(
+        outer=np.zeros((len(plant.bodies.mass), 6)),
+        state=np.zeros(13),
+        reply=np.zeros(64),
+        replies=np.zeros(1, dtype=np.int64),
+        commands=np.zeros(len(plant.torquers.body) + len(plant.wheels.body) + len(plant.thrusters.body)),
+        culprit=np.zeros(2, dtype=np.int64),
+    )
+
+
+@njit(cache=True)
+def lift(y, start, z):
+    """State y as the stepper's z and the attitudes it starts from."""
+    bodies = start.shape[0]
+    for b in range(bodies):
+        for j in range(6):
+            z[TANGENT * b + j] = y[STATE * b + j]
+        for j in range(4):
+            start[b, j] = y[STATE * b + 6 + j]
+        for j in range(3):
+            z[TANGENT * b + 6 + j] = 0.0
+            z[TANGENT * b + 9 + j] = y[STATE * b + 10 + j]
+    for j in range(TANGENT * bodies, z.shape[0]):
+        z[j] = y[j + bodies]
+
+
+@njit(cache=True)
+def settle(z, start, y):
+    """The stepper's z as a state; equation (1)."""
+    bodies = start.shape[0]
+    for b in range(bodies):
+        for j in range(6):
+            y[STATE * b + j] = z[TANGENT * b + j]
+        q0 = (start[b, 0], start[b, 1], start[b, 2], start[b, 3])
+        q = quat_unit(quat_mul(q0, quat_exp(three(z, TANGENT * b + 6))))
+        for j in range(4):
+            y[STATE * b + 6 + j] = q[j]
+        store(y, STATE * b + 10, three(z, TANGENT * b + 9))
+    for j in range(TANGENT * bodies, z.shape[0]):
+        y[j + bodies] = z[j]
+
+
+@njit(cache=True)
+def attempt(t, h, y, plant, inputs, hold, tableau, loads, call, shared, work):
+    """Stages of a step of length h from state y, leaving its end in work.z1; 0 or what a user's load did wrong."""
+    lift(y, work.start, work.z)
+    if hold:
+        freeze_fields(t, h, y, plant, work.frozen)
+    stages = tableau.b.shape[0]
+    for s in range(stages):
+        combine(work.z, h, work.k, tableau.a[s], s, work.stage)
+        status = plant_rates(
+            t + tableau.c[s] * h,
+            work.stage,
+            work.start,
+            plant,
+            inputs,
+            work.frozen,
+            hold,
+            loads,
+            call,
+            shared,
+            work.log,
+            work.k[s],
+        )
+        if status != 0:
+            return status
+    combine(work.z, h, work.k, tableau.b, stages, work.z1)
+    return 0
+
+
+@njit(cache=True)
+def closing_rates(t, h, plant, inputs, hold, loads, call, shared, work, row):
+    """Evaluate the right-hand side at the step's end, into row `row` of k."""
+    return plant_rates(t + h, work.z1, work.start, plant, inputs, work.frozen, hold, loads, call, shared, work.log, work.k[row])
+
+
+def rates_of(t: float, y, plant: Plant, inputs, loads, call, shared: Shared) -> tuple[np.ndarray, np.ndarray]:
+    """(dz/dt, log) at a state: the right-hand side once, with force_i and torque_b of every load, (loads, bodies, 6)."""
+    from fieldline.dynamics.rates import LOADS
+
+    if len(y) != state_size(plant):
+        raise ValueError(f"the plant's state has {state_size(plant)} numbers; got {len(y)}")
+    work = new_work(plant, 1, len(LOADS))
+    lift(np.asarray(y, dtype=float), work.start, work.z)
+    out = np.zeros_like(work.z)
+    plant_rates(t, work.z, work.start, plant, inputs, work.frozen, False, loads, call, shared, work.log, out)
+    return out, work.log

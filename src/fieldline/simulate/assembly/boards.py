@@ -1,0 +1,179 @@
+"""What the loop starts from: sensors, boards, actuators, schedule, commands, and the record that it fills."""
+
+from __future__ import annotations
+
+from math import ceil
+
+import numpy as np
+
+from fieldline.dynamics.parameters import Inputs, Plant, state_size, tangent_size
+from fieldline.dynamics.rates import LOADS
+from fieldline.errors import InputError
+from fieldline.sensing.measurement import Measurement
+from fieldline.sensing.suite import suite
+from fieldline.simulate.assembly.plant import each, fresh, no_field
+from fieldline.simulate.loop import records as loop
+
+KINDS = {
+    "navigation": loop.NAVIGATION,
+    "magnetometer": loop.MAGNETOMETER,
+    "gyro": loop.GYRO,
+    "sun_sensor": loop.SUN_SENSOR,
+    "star_tracker": loop.STAR_TRACKER,
+}  # in the order in which they are read
+MOST_NUMBERS = 4e8  # of a record: 3 GB
+
+
+def boards_of(scenario) -> loop.Boards:
+    """One row a body, nothing known yet."""
+    bodies = scenario.body
+    count = len(bodies)
+    faces = np.array([len(b.sun_sensor.normals_b) if b.sun_sensor else 0 for b in bodies], dtype=np.int64)
+    wheels = np.array([len(b.wheel) for b in bodies], dtype=np.int64)
+    widths = dict.fromkeys(Measurement._fields, 3)
+    widths |= {"field_time_s": 1, "q_bi": 4, "valid": 6, "sun_sensor": int(faces.max()), "wheel_momentum": int(wheels.max())}
+    rows = {name: np.full((count, width), np.nan) for name, width in widths.items()}
+    for name in ("valid", "wheel_momentum", "dipole_b"):
+        rows[name][:] = 0.0
+    return loop.Boards(**rows, faces=faces, wheels=wheels)
+
+
+def measurement_row(boards: loop.Boards, b: int) -> Measurement:
+    """What a plain Python law sees of body b: views that the loop keeps up to date."""
+    rows = {name: getattr(boards, name)[b] for name in Measurement._fields}
+    rows["sun_sensor"] = rows["sun_sensor"][: boards.faces[b]]
+    rows["wheel_momentum"] = rows["wheel_momentum"][: boards.wheels[b]]
+    return Measurement(**rows)
+
+
+def onboard_model(scenario, body):
+    """The field model that flies on a body: its own, or that of the environment; None where that is uniform."""
+    from fieldline.environment.field_registry import field_model
+
+    if body.onboard is not None and scenario.environment.uniform_field_i_tesla is None:
+        return field_model(body.onboard.field, degree=body.onboard.field_degree)
+    return scenario.environment.field_model()
+
+
+def sensors_of(scenario, plant: Plant, estimated: list[bool], middle) -> loop.Sensors:
+    """The sensors; the field model on board is that of the first body that names one."""
+    bodies = scenario.body
+    chosen = next((b for b in bodies if b.onboard is not None), bodies[0])
+    model = onboard_model(scenario, chosen)
+    table = suite(
+        len(bodies),
+        magnetometers=[b.magnetometer for b in bodies],
+        gyros=[b.gyro for b in bodies],
+        sun_sensors=[b.sun_sensor for b in bodies],
+        star_trackers=[b.star_tracker for b in bodies],
+        navigations=[b.navigation for b in bodies],
+        rate_estimated=estimated,
+    )
+    field = no_field() if model is None else fresh(model.at(middle))
+    return loop.Sensors(suite=fresh(table), gyro_bias=table.gyro.bias.copy(), field=field)
+
+
+def actuators_of(scenario, plant: Plant) -> loop.Actuators:
+    """Torquers, wheels and thrusters with their limits and their share of what a law wants."""
+    torquers, wheels, thrusters = (each(scenario.body, kind) for kind in ("magnetorquer", "wheel", "thruster"))
+    everything = [*torquers, *wheels, *thrusters]
+    share = np.zeros((len(everything), 3))
+    for body in range(len(scenario.body)):
+        for first, group, sign in ((0, torquers, 1.0), (len(torquers), wheels, -1.0)):
+            rows = [first + k for k, (owner, _) in enumerate(group) if owner == body]
+            if rows:
+                axes = np.array([group[k - first][1].axis_b for k in rows])
+                share[rows] = sign * np.linalg.pinv(axes.T)
+    limits = [one.moment_max_a_m2 for _, one in torquers] + [one.torque_max_n_m for _, one in wheels] + [1.0] * len(thrusters)
+    quanta = [one.quantum_a_m2 for _, one in torquers] + [one.quantum_n_m for _, one in wheels] + [0.0] * len(thrusters)
+    return loop.Actuators(
+        body=np.array([b for b, _ in everything], dtype=np.int64),
+        share=share,
+        limit=np.array(limits, dtype=float),
+        quantum=np.array(quanta, dtype=float),
+        torquers=len(torquers),
+        wheels=len(wheels),
+        off=np.zeros(len(scenario.body), dtype=np.int64),
+        wanted=np.zeros(len(everything)),
+        least=np.array([one.minimum_on_time_s for _, one in thrusters], dtype=float),
+        until=np.full(len(thrusters), loop.NEVER),
+    )
+
+
+def inputs_of(plant: Plant) -> Inputs:
+    """No command yet."""
+    torquers = len(plant.torquers.body)
+    return Inputs(
+        dipole_from=np.zeros(torquers),
+        dipole_to=np.zeros(torquers),
+        dipole_since=np.zeros(torquers),
+        wheel_torque=np.zeros(len(plant.wheels.body)),
+        thrust=np.zeros(len(plant.thrusters.body)),
+    )
+
+
+def schedule_of(scenario, software, step_s: float) -> loop.Schedule:
+    """Sensors, estimators, controllers, duty cycles and outputs, in the order in which they are done at one time."""
+    rows = []
+    for key, kind in KINDS.items():
+        for b, body in enumerate(scenario.body):
+            sensor = getattr(body, key)
+            if sensor is not None:
+                rows.append((kind, b, 1.0 / sensor.rate_hz, sensor.phase_s))
+    order = sorted(range(len(software)), key=lambda i: software[i].record.role != "estimator")
+    rows += [(loop.TASK, i, 1.0 / software[i].record.rate_hz, software[i].record.phase_s) for i in order]
+    for b, body in enumerate(scenario.body):
+        if body.duty_cycle is not None:
+            cycle = body.duty_cycle
+            rows += [(loop.TORQUE_ON, b, cycle.period_s, 0.0), (loop.TORQUE_OFF, b, cycle.period_s, cycle.torque_on_s)]
+    rows.append((loop.OUTPUT, 0, step_s, 0.0))
+    kind, who, period, phase = zip(*rows, strict=True)
+    return loop.Schedule(
+        kind=np.array(kind, dtype=np.int64),
+        who=np.array(who, dtype=np.int64),
+        period=np.array(period, dtype=float),
+        phase=np.array(phase, dtype=float),
+        count=np.zeros(len(rows), dtype=np.int64),
+    )
+
+
+def record_of(scenario, plant: Plant, schedule: loop.Schedule, duration_s: float) -> loop.Record:
+    """Room for everything that the run will leave behind."""
+    bodies = len(scenario.body)
+    rows = int(duration_s / scenario.time.output_step_s + 1e-6) + 2
+    samples = 0
+    for kind, period, phase in zip(schedule.kind, schedule.period, schedule.phase, strict=True):
+        if kind in KINDS.values() and phase <= duration_s:
+            samples += int((duration_s - phase) / period + 1e-6) + 2
+    widest = max([4, *(len(b.sun_sensor.normals_b) for b in scenario.body if b.sun_sensor)])
+    numbers = rows * (state_size(plant) + bodies * (11 + 6 * len(LOADS))) + samples * (2 + widest)
+    if numbers > MOST_NUMBERS:
+        raise InputError(
+            f"the run would keep {rows} outputs and {samples} readings, {8e-9 * numbers:.1f} GB. Raise output_step_s, lower the "
+            "sensors' rate_hz, or shorten the run."
+        )
+    actuators = len(plant.torquers.body) + len(plant.wheels.body) + len(plant.thrusters.body)
+    return loop.Record(
+        seconds=np.zeros(rows),
+        state=np.zeros((rows, state_size(plant))),
+        field_i=np.zeros((rows, bodies, 3)),
+        sunlit=np.zeros((rows, bodies)),
+        actuators=np.zeros((rows, actuators)),
+        known=np.zeros((rows, bodies, 7)),
+        loads=np.zeros((rows, len(LOADS), bodies, 6)),
+        samples=np.zeros((samples, 2 + widest)),
+        start=np.zeros((bodies, 4)),
+        z=np.zeros(tangent_size(plant)),
+        rate=np.zeros(tangent_size(plant)),
+    )
+
+
+def clock_of(first_step_s: float) -> loop.Clock:
+    """At the start."""
+    whole = {name: np.zeros(1, dtype=np.int64) for name in ("rows", "samples", "events")}
+    return loop.Clock(t=np.zeros(1), h=np.array([first_step_s]), steps=np.zeros(2, dtype=np.int64), **whole)
+
+
+def depth_of(records) -> int:
+    """Commands that may wait at once."""
+    return max([2, *(ceil(one.delay_s * one.rate_hz) + 2 for one in records)])

@@ -1,0 +1,81 @@
+"""What the designers of flight software know beforehand: inertia, actuators, and the field along the nominal orbit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fieldline.constants import EARTH_GM_M3_S2
+from fieldline.mechanics.rigid_body import as_inertia9
+from fieldline.simulate.assembly.boards import onboard_model
+from fieldline.simulate.assembly.start import orbital_axes_of, orbits_of
+
+SAMPLES_PER_ORBIT = 120
+DAY_S = 86400.0
+
+
+class Design:
+    """design(body, period_s) is the `DesignContext` of a law of that body, called every period_s."""
+
+    def __init__(self, scenario, plant):
+        """Kept until a law asks."""
+        self._scenario = scenario
+
+    def __call__(self, b: int, period_s: float):
+        """The context; the field is worked out when a law asks for it."""
+        from fieldline.control import DesignContext
+
+        body = self._scenario.body[b]
+        position, velocity = orbits_of(self._scenario)[b]
+        momentum = np.cross(position, velocity)
+        energy = 0.5 * velocity @ velocity - EARTH_GM_M3_S2 / np.linalg.norm(position)
+        axis = -0.5 * EARTH_GM_M3_S2 / energy
+        mean_motion = float(np.sqrt(EARTH_GM_M3_S2 / axis**3))
+        moments = [np.abs(one.axis_b) * one.moment_max_a_m2 for one in body.magnetorquer]
+        return DesignContext(
+            inertia_kg_m2=np.reshape(as_inertia9(body.inertia_kg_m2)[0], (3, 3)),
+            mean_motion_rad_s=mean_motion,
+            inclination_rad=float(np.arccos(np.clip(momentum[2] / np.linalg.norm(momentum), -1.0, 1.0))),
+            period_s=period_s,
+            moment_max_a_m2=np.sum(moments, axis=0) if moments else np.zeros(3),
+            wheel_axes_b=np.array([one.axis_b for one in body.wheel]).reshape(-1, 3),
+            field_along_orbit=lambda: field_along(self._scenario, b, 2.0 * np.pi / mean_motion),
+        )
+
+
+def field_along(scenario, b: int, period_s: float):
+    """(seconds, field_o, field_i) of the on-board model over the nominal orbits of a day [T].
+
+    The orbit has the oblateness but no air; a day lets the Earth turn once under it.
+    """
+    from fieldline.environment.field import magnetic_field
+    from fieldline.frames.earth_rotation import dcm_ei
+
+    position, velocity = nominal_orbit(*orbits_of(scenario)[b], period_s)
+    seconds = np.arange(len(position)) * period_s / SAMPLES_PER_ORBIT
+    model = onboard_model(scenario, scenario.body[b])
+    if model is None:
+        field_i = np.broadcast_to(np.array(scenario.environment.uniform_field_i_tesla), position.shape).copy()
+    else:
+        times = scenario.time.start + (1e9 * seconds).astype("timedelta64[ns]")
+        turn = dcm_ei(times)
+        field_e = magnetic_field(np.einsum("nij,nj->ni", turn, position), times, model)
+        field_i = np.einsum("nji,nj->ni", turn, field_e)
+    axes = np.stack([orbital_axes_of(r, v)[0] for r, v in zip(position, velocity, strict=True)])
+    return seconds, np.einsum("nij,nj->ni", axes, field_i), field_i
+
+
+def nominal_orbit(position, velocity, period_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and velocities, GCRS axes, over the whole orbits of about a day, with the oblateness alone."""
+    from scipy.integrate import solve_ivp
+
+    from fieldline.environment.gravity import gravity_kernel, gravity_model
+
+    gravity = gravity_model("j2")
+    orbits = max(1, round(DAY_S / period_s))
+    times = np.arange(orbits * SAMPLES_PER_ORBIT) * period_s / SAMPLES_PER_ORBIT
+
+    def rate(_, s):
+        return [*s[3:], *gravity_kernel((s[0], s[1], s[2]), gravity)]
+
+    flown = solve_ivp(rate, (0.0, times[-1]), [*position, *velocity], "DOP853", times, rtol=1e-9, atol=1e-3)
+    return flown.y[:3].T.copy(), flown.y[3:].T.copy()

@@ -1,0 +1,135 @@
+"""One run: everything that the compiled loop works on, and how it is driven.
+
+    flight = Flight(scenario)
+    flight.fly(progress)          # returns when the run is done, stopped or broken, or is interrupted
+    dataset = flight.dataset()    # what was simulated, whole or in part
+
+The loop comes back every fraction of a second, so that progress is shown and Ctrl-C is heard.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from fieldline.constants import EARTH_GM_M3_S2
+from fieldline.dynamics.parameters import TANGENT, tangent_size
+from fieldline.dynamics.step import new_shared, new_work
+from fieldline.errors import InputError
+from fieldline.integrate.tableau import DOP853, RK4
+from fieldline.simulate.assembly import boards as made
+from fieldline.simulate.assembly.design import Design
+from fieldline.simulate.assembly.functions import UserFunctions, events_of
+from fieldline.simulate.assembly.host import Host
+from fieldline.simulate.assembly.plant import plant_of
+from fieldline.simulate.assembly.software import place, software_of, tasks_of
+from fieldline.simulate.assembly.start import orbits_of, start_of
+from fieldline.simulate.loop.fly import fly
+from fieldline.simulate.loop.records import Outcome, Stepping
+
+FLOOR_M = 80e3  # height below which neither orbit nor air models mean anything
+CHUNK_S = 0.2  # of wall time between returns
+FIRST_CHUNK = 200  # steps
+
+
+class Flight:
+    """A scenario made ready to fly; see the module."""
+
+    def __init__(self, scenario, seed: int | None = None):
+        """Everything is checked and made here; `seed` replaces the scenario's."""
+        self.scenario = scenario
+        self.seed = scenario.seed if seed is None else seed
+        start_seed, noise_seed = np.random.SeedSequence(self.seed).spawn(2)
+        self.rng = np.random.Generator(np.random.PCG64(noise_seed))
+        self.duration_s = scenario.time.length_s(period_of(scenario))
+        self.host = Host()
+        user = UserFunctions(scenario, self.host)
+        self.load_names = user.load_names
+        self.plant = plant_of(scenario, self.duration_s, user.loads)
+        self.y = start_of(scenario, self.plant, np.random.default_rng(start_seed))
+        self.start = self.y.copy()
+        self.shared = new_shared(self.plant)
+        self.host.connect(self.shared)
+        user.connect(self.shared)
+        self.software = software_of(scenario, Design(scenario, self.plant))
+        self.actuators = made.actuators_of(scenario, self.plant)
+        self.tasks = tasks_of(scenario, self.software, self.actuators)
+        self.boards = made.boards_of(scenario)
+        self.laws, self.memories, self.parameters = place(self.software, self.tasks, self.boards, self.host)
+        middle = scenario.time.start + np.timedelta64(round(0.5e9 * self.duration_s), "ns")
+        estimated = [any(t.body == b and t.record.role == "estimator" for t in self.software) for b in range(len(scenario.body))]
+        self.sensors = made.sensors_of(scenario, self.plant, estimated, middle)
+        self.inputs = made.inputs_of(self.plant)
+        self.schedule = made.schedule_of(scenario, self.software, scenario.time.output_step_s)
+        self.stepping = stepping_of(scenario, self.plant, self.duration_s)
+        self.events = events_of(scenario, user.events)
+        self.record = made.record_of(scenario, self.plant, self.schedule, self.duration_s)
+        self.clock = made.clock_of(scenario.integrator.step_s)
+        self.work = new_work(self.plant, self.stepping.tableau.evaluations)
+        self.loads = user.slots.filled()
+        self.outcome = Outcome.PAUSED
+        self.interrupted = False
+
+    def fly(self, progress: Callable[[float], None] | None = None) -> Outcome:
+        """Fly to the end, or until something ends the run; `progress` is told the fraction done."""
+        chunk = FIRST_CHUNK
+        try:
+            while self.outcome == Outcome.PAUSED:
+                begun = time.perf_counter()
+                self.outcome = Outcome(self._fly_on(chunk))
+                spent = time.perf_counter() - begun
+                chunk = int(min(max(chunk * CHUNK_S / max(spent, 1e-6), chunk / 4, 10), 4 * chunk, 1e7))
+                if progress is not None:
+                    progress(min(self.clock.t[0] / self.duration_s, 1.0))
+        except KeyboardInterrupt:
+            self.interrupted = True
+        if isinstance(self.host.error, KeyboardInterrupt):
+            self.interrupted = True
+        return self.outcome
+
+    def _fly_on(self, budget: int) -> int:
+        """Some steps of the loop."""
+        return fly(
+            budget, self.y, np.empty_like(self.y), self.plant, self.inputs, self.schedule, self.stepping, self.sensors,
+            self.boards, self.tasks, self.actuators, self.events, self.record, self.clock, self.laws, self.memories,
+            self.parameters, self.loads, self.host.callback, self.shared, self.work, self.rng,
+        )  # fmt: skip
+
+    @property
+    def complete(self) -> bool:
+        """Whether the run went to its end, or to an event that was to stop it."""
+        return self.outcome in (Outcome.DONE, Outcome.STOPPED) and not self.interrupted
+
+
+def period_of(scenario) -> float:
+    """Orbital period of the first body [s], from its state at the start."""
+    position, velocity = orbits_of(scenario)[0]
+    energy = 0.5 * velocity @ velocity - EARTH_GM_M3_S2 / np.linalg.norm(position)
+    if energy >= 0.0:
+        raise InputError("the first body does not stay with the Earth: its speed is that of escape. Check [orbit].")
+    axis = -0.5 * EARTH_GM_M3_S2 / energy
+    return 2.0 * np.pi * np.sqrt(axis**3 / EARTH_GM_M3_S2)
+
+
+def stepping_of(scenario, plant, duration_s: float) -> Stepping:
+    """Method, step and tolerances."""
+    integrator = scenario.integrator
+    adaptive = integrator.method == "dop853"
+    absolute = np.full(tangent_size(plant), integrator.rate_tolerance_rad_s)
+    allowed = [integrator.position_tolerance_m] * 3 + [integrator.velocity_tolerance_m_s] * 3
+    allowed += [integrator.angle_tolerance_rad] * 3 + [integrator.rate_tolerance_rad_s] * 3
+    bodies = len(plant.bodies.mass)
+    for b in range(bodies):
+        absolute[TANGENT * b : TANGENT * (b + 1)] = allowed
+    return Stepping(
+        tableau=DOP853 if adaptive else RK4,
+        adaptive=adaptive,
+        hold=integrator.field_update == "step",
+        step=(integrator.step_max_s or 1e9) if adaptive else integrator.step_s,
+        relative=integrator.relative_tolerance,
+        absolute=absolute,
+        end=duration_s,
+        floor=FLOOR_M,
+    )

@@ -1,0 +1,147 @@
+"""From what a law wants to what the actuators do: allocation, limits, delay, duty cycle.
+
+    u_k = clip( q_k round( (P w)_k / q_k ), limit_k )                                                      (1)
+
+w: the wanted dipole of a body's torquers, or the wanted torque of its wheels on it; P: the pseudo-inverse of their axes,
+so the command is the least one that gives w where the axes span it. A wheel gives the body the opposite of what its
+motor gives the wheel: the sign is in P. A thruster told 0 to 1 fires at full thrust for that part of the law's period,
+not at all where that is less than its shortest firing.
+"""
+
+from __future__ import annotations
+
+from math import exp
+
+from numba import njit
+
+from fieldline.simulate.loop.records import NEVER, SAME_TIME_S
+
+
+@njit(cache=True)
+def limited(wanted, limit, quantum):
+    """One actuator's command; equation (1)."""
+    if quantum > 0.0:
+        wanted = quantum * round(wanted / quantum)
+    return min(max(wanted, -limit), limit)
+
+
+@njit(cache=True)
+def allocate(reply, count, task, tasks, actuators, out):
+    """What law `task` wants, as commands of its body's actuators into `out`; others keep NEVER. Returns numbers used."""
+    body = tasks.body[task]
+    at = 0
+    first = 0
+    for group in range(3):
+        last = actuators.torquers if group == 0 else first + actuators.wheels
+        if group == 2:
+            last = actuators.body.shape[0]
+        wanted = tasks.groups[task, group] != 0
+        column = at
+        for k in range(first, last):
+            if not wanted or actuators.body[k] != body:
+                continue
+            if group == 2:
+                value = reply[column] if column < count else 0.0
+                out[k] = min(max(value, 0.0), 1.0)
+                column += 1
+            else:
+                value = 0.0
+                for j in range(3):
+                    value += actuators.share[k, j] * reply[at + j]
+                out[k] = limited(value, actuators.limit[k], actuators.quantum[k])
+        if wanted:
+            at = column if group == 2 else at + 3
+        first = last
+    return at
+
+
+@njit(cache=True)
+def send(t, task, tasks, commands):
+    """Put commands (actuators,) in the queue of a task; the oldest place is taken if it is full."""
+    depth = tasks.pending.shape[1]
+    place = 0
+    for j in range(depth):
+        if tasks.pending[task, j] >= NEVER:
+            place = j
+            break
+    tasks.pending[task, place] = t + tasks.delay[task]
+    for k in range(commands.shape[0]):
+        tasks.waiting[task, place, k] = commands[k]
+
+
+@njit(cache=True)
+def next_command(tasks):
+    """When the next command takes effect [s], NEVER where none waits."""
+    soonest = NEVER
+    for i in range(tasks.pending.shape[0]):
+        for j in range(tasks.pending.shape[1]):
+            soonest = min(soonest, tasks.pending[i, j])
+    return soonest
+
+
+@njit(cache=True)
+def drive(t, k, value, period, plant, inputs, actuators):
+    """Let actuator k do `value` from t on; a thruster for that part of `period`."""
+    if k < actuators.torquers:
+        lag = plant.torquers.lag[k]
+        now = inputs.dipole_to[k]
+        if lag > 0.0:
+            now += (inputs.dipole_from[k] - now) * exp(-(t - inputs.dipole_since[k]) / lag)
+        inputs.dipole_from[k] = now
+        inputs.dipole_to[k] = value
+        inputs.dipole_since[k] = t
+    elif k < actuators.torquers + actuators.wheels:
+        inputs.wheel_torque[k - actuators.torquers] = value
+    else:
+        thruster = k - actuators.torquers - actuators.wheels
+        firing = value * period
+        if firing <= 0.0 or firing < actuators.least[thruster]:
+            inputs.thrust[thruster] = 0.0
+            actuators.until[thruster] = NEVER
+        else:
+            inputs.thrust[thruster] = 1.0
+            actuators.until[thruster] = t + firing
+
+
+@njit(cache=True)
+def cease_fire(t, inputs, actuators):
+    """End the firings whose time is up."""
+    for k in range(actuators.until.shape[0]):
+        if actuators.until[k] <= t + SAME_TIME_S:
+            inputs.thrust[k] = 0.0
+            actuators.until[k] = NEVER
+
+
+@njit(cache=True)
+def next_ceasing(actuators):
+    """When the next firing ends [s]."""
+    soonest = NEVER
+    for k in range(actuators.until.shape[0]):
+        soonest = min(soonest, actuators.until[k])
+    return soonest
+
+
+@njit(cache=True)
+def obey(t, plant, inputs, tasks, actuators):
+    """Let every command that is due take effect."""
+    for i in range(tasks.pending.shape[0]):
+        for j in range(tasks.pending.shape[1]):
+            if tasks.pending[i, j] > t + SAME_TIME_S:
+                continue
+            tasks.pending[i, j] = NEVER
+            for k in range(actuators.body.shape[0]):
+                value = tasks.waiting[i, j, k]
+                if value >= NEVER:
+                    continue
+                actuators.wanted[k] = value
+                if not (k < actuators.torquers and actuators.off[actuators.body[k]] != 0):
+                    drive(t, k, value, tasks.period[i], plant, inputs, actuators)
+
+
+@njit(cache=True)
+def switch_torquers(t, body, off, plant, inputs, actuators):
+    """Duty cycle: let the torquers of a body rest, or do what was wanted last."""
+    actuators.off[body] = 1 if off else 0
+    for k in range(actuators.torquers):
+        if actuators.body[k] == body:
+            drive(t, k, 0.0 if off else actuators.wanted[k], 0.0, plant, inputs, actuators)

@@ -1,0 +1,119 @@
+"""Laws at their times: what is known on board goes in, commands or an attitude come out.
+
+A compiled law is one of a few slots, called through its address; a plain Python law is called back by its number and
+leaves its answer in `shared.reply`. Both see the same rows of `Boards`, as a `Measurement`.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from fieldline.dynamics.parameters import STATE
+from fieldline.dynamics.rates import three
+from fieldline.environment.ephemeris import dcm_ei_kernel
+from fieldline.environment.field import field_kernel
+from fieldline.frames.matrices import matvec, transpose
+from fieldline.sensing.measurement import ATTITUDE, ORBIT, RATE, Measurement
+from fieldline.simulate.loop.commands import allocate, send
+from fieldline.simulate.loop.records import NEVER, Outcome
+
+LAW_RAISED, LAW_SHAPE, LAW_NOT_FINITE = int(Outcome.LAW_RAISED), int(Outcome.LAW_SHAPE), int(Outcome.LAW_NOT_FINITE)
+KNOWLEDGE = 7  # numbers of an estimator's answer
+
+
+@njit(cache=True)
+def measurement_of(boards, b):
+    """Row b as what a law sees: views, not copies."""
+    sun = boards.sun_sensor[b]
+    wheels = boards.wheel_momentum[b]
+    return Measurement(
+        boards.field_b[b],
+        boards.field_time_s[b],
+        boards.rate_b[b],
+        sun[: boards.faces[b]],
+        boards.q_bi[b],
+        boards.omega_bi_b[b],
+        boards.position_i[b],
+        boards.velocity_i[b],
+        boards.field_i[b],
+        wheels[: boards.wheels[b]],
+        boards.dipole_b[b],
+        boards.valid[b],
+    )
+
+
+@njit(cache=True)
+def refresh(t, b, y, plant, sensors, boards):
+    """What is known at any time: the orbit where no receiver reads it, the wheels' speeds, the reference field."""
+    if sensors.suite.navigation.present[b] == 0.0:
+        for j in range(3):
+            boards.position_i[b, j] = y[STATE * b + j]
+            boards.velocity_i[b, j] = y[STATE * b + 3 + j]
+        boards.valid[b, ORBIT] = 1.0
+    at = 0
+    base = STATE * plant.bodies.mass.shape[0]
+    for k in range(plant.wheels.body.shape[0]):
+        if plant.wheels.body[k] == b:
+            boards.wheel_momentum[b, at] = y[base + k]
+            at += 1
+    if boards.valid[b, ORBIT] != 0.0:
+        dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
+        place = (boards.position_i[b, 0], boards.position_i[b, 1], boards.position_i[b, 2])
+        field_i = matvec(transpose(dcm_ei), field_kernel(matvec(dcm_ei, place), sensors.field))
+        uniform = three(plant.surroundings.uniform_field_i, 0)
+        for j in range(3):
+            boards.field_i[b, j] = field_i[j] + uniform[j]
+
+
+@njit(cache=True)
+def believe(reply, b, boards):
+    """Take an estimator's answer as what is known of attitude and rate."""
+    for j in range(4):
+        boards.q_bi[b, j] = reply[j]
+    for j in range(3):
+        boards.omega_bi_b[b, j] = reply[4 + j]
+    boards.valid[b, ATTITUDE] = 1.0
+    boards.valid[b, RATE] = 1.0
+
+
+@njit(cache=True)
+def all_finite(values, count):
+    """Are the first `count` numbers finite?"""
+    for j in range(count):
+        if not abs(values[j]) < 1e300:
+            return False
+    return True
+
+
+@njit(cache=True)
+def run_task(t, i, y, plant, sensors, boards, tasks, actuators, laws, memories, parameters, call, shared):
+    """Run task i; 0 or the outcome that ends the run, with the culprit noted."""
+    b = tasks.body[i]
+    refresh(t, b, y, plant, sensors, boards)
+    shared.culprit[0] = i
+    tasks.runs[i] += 1
+    slot = tasks.slot[i]
+    if slot < 0:
+        if call(i, t) != 0:
+            return LAW_RAISED
+        reply = shared.reply
+        count = shared.replies[0]
+    else:
+        reply = laws[slot](t, measurement_of(boards, b), memories[slot], parameters[slot])
+        count = reply.shape[0]
+    shared.culprit[1] = count
+    if tasks.estimator[i] != 0 and count == 0:
+        return 0  # it knows nothing yet
+    if count != tasks.replies[i]:
+        return LAW_SHAPE
+    if not all_finite(reply, count):
+        return LAW_NOT_FINITE
+    if tasks.estimator[i] != 0:
+        believe(reply, b, boards)
+        return 0
+    commands = shared.commands
+    for k in range(commands.shape[0]):
+        commands[k] = NEVER
+    allocate(reply, count, i, tasks, actuators, commands)
+    send(t, i, tasks, commands)
+    return 0

@@ -1,0 +1,279 @@
+"""The loop: sensors, laws, commands and outputs at their times, and the plant between them.
+
+    while t < end:
+        do what is due at t, in the order of the schedule's rows; let commands that are due take effect
+        step the plant to the next time at which anything is due
+
+RK4 divides the way to the next such time into equal steps of at most the given length; DOP853 chooses its steps by their
+error and interpolates outputs, which do not bind it. The loop returns after `budget` steps, and goes on where it was
+when it is called again.
+"""
+
+from __future__ import annotations
+
+from math import ceil
+
+from numba import njit
+
+from fieldline.dynamics.loads.magnetic import torquer_moment
+from fieldline.dynamics.parameters import STATE
+from fieldline.dynamics.rates import LOADS, NOT_FINITE, RAISED, field_at, plant_rates, three
+from fieldline.dynamics.step import attempt, lift, settle
+from fieldline.environment.eclipse import sunlit_kernel
+from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
+from fieldline.frames.vectors import norm, put
+from fieldline.integrate.steps import error_norm, error_scale, next_step
+from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, obey, switch_torquers
+from fieldline.simulate.loop.flight_software import run_task
+from fieldline.simulate.loop.records import NEVER, OUTPUT, SAME_TIME_S, TASK, TORQUE_OFF, TORQUE_ON, Outcome
+from fieldline.simulate.loop.sampling import sample
+from fieldline.simulate.loop.watching import height_of, interpolant, quantity, watch, within
+
+PAUSED, DONE, STOPPED = int(Outcome.PAUSED), int(Outcome.DONE), int(Outcome.STOPPED)
+BROKEN, GROUND, COARSE, UNDERFLOW = int(Outcome.NOT_FINITE), int(Outcome.GROUND), int(Outcome.COARSE), int(Outcome.UNDERFLOW)
+LOAD_RAISED, LOAD_SHAPE, LOAD_NOT_FINITE = int(Outcome.LOAD_RAISED), int(Outcome.LOAD_SHAPE), int(Outcome.LOAD_NOT_FINITE)
+COARSEST_TURN = 1.0  # [rad] of a fixed step: beyond it the wobble of a body is no longer followed
+SHORTEST = 1e-9  # [s] of an adaptive step
+
+
+@njit(cache=True)
+def load_outcome(status):
+    """The outcome of what a user's load did wrong."""
+    if status == RAISED:
+        return LOAD_RAISED
+    return LOAD_NOT_FINITE if status == NOT_FINITE else LOAD_SHAPE
+
+
+@njit(cache=True)
+def next_time(schedule, tasks, actuators, stepping):
+    """When anything is due next that the plant must be stepped to [s]; outputs bind fixed steps only."""
+    soonest = min(stepping.end, min(next_command(tasks), next_ceasing(actuators)))
+    for j in range(schedule.kind.shape[0]):
+        if not (stepping.adaptive and schedule.kind[j] == OUTPUT):
+            soonest = min(soonest, schedule.phase[j] + schedule.count[j] * schedule.period[j])
+    return soonest
+
+
+@njit(cache=True)
+def write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, work):
+    """Keep the state and what goes with it."""
+    row = clock.rows[0]
+    if row >= record.seconds.shape[0]:
+        return
+    clock.rows[0] = row + 1
+    record.seconds[row] = t
+    record.state[row, :] = y
+    surroundings = plant.surroundings
+    dcm_ei = dcm_ei_kernel(t, surroundings.ephemeris)
+    sun_i = sun_kernel(t, surroundings.ephemeris)
+    for b in range(plant.bodies.mass.shape[0]):
+        r = three(y, STATE * b)
+        put(record.field_i[row], b, field_at(r, dcm_ei, surroundings))
+        record.sunlit[row, b] = sunlit_kernel(r, sun_i)
+        for j in range(4):
+            record.known[row, b, j] = boards.q_bi[b, j]
+        for j in range(3):
+            record.known[row, b, 4 + j] = boards.omega_bi_b[b, j]
+    torquers, wheels = plant.torquers.body.shape[0], plant.wheels.body.shape[0]
+    for k in range(torquers):
+        record.actuators[row, k] = torquer_moment(t, k, plant.torquers, inputs)
+    for k in range(wheels):
+        record.actuators[row, torquers + k] = inputs.wheel_torque[k]
+    for k in range(plant.thrusters.body.shape[0]):
+        record.actuators[row, torquers + wheels + k] = inputs.thrust[k]
+    if record.loads.shape[0] > 0:
+        lift(y, record.start, record.z)
+        log = record.loads[row]
+        plant_rates(t, record.z, record.start, plant, inputs, work.frozen, False, loads, call, shared, log, record.rate)
+
+
+@njit(cache=True)
+def do_due(
+    t,
+    y,
+    plant,
+    inputs,
+    schedule,
+    sensors,
+    boards,
+    tasks,
+    actuators,
+    stepping,
+    record,
+    clock,
+    laws,
+    memories,
+    parameters,
+    loads,
+    call,
+    shared,
+    work,
+    rng,
+):
+    """Everything that is due at t; 0 or the outcome that ends the run."""
+    for j in range(schedule.kind.shape[0]):
+        if schedule.phase[j] + schedule.count[j] * schedule.period[j] > t + SAME_TIME_S:
+            continue
+        schedule.count[j] += 1
+        kind, who = schedule.kind[j], schedule.who[j]
+        if kind == TASK:
+            outcome = run_task(t, who, y, plant, sensors, boards, tasks, actuators, laws, memories, parameters, call, shared)
+            if outcome != 0:
+                return outcome
+        elif kind == OUTPUT:
+            if not stepping.adaptive or t == 0.0:
+                obey(t, plant, inputs, tasks, actuators)
+                write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, work)
+        elif kind == TORQUE_OFF or kind == TORQUE_ON:
+            switch_torquers(t, who, kind == TORQUE_OFF, plant, inputs, actuators)
+        else:
+            sample(t, j, kind, who, y, plant, inputs, sensors, boards, schedule, record, clock, rng)
+    cease_fire(t, inputs, actuators)
+    obey(t, plant, inputs, tasks, actuators)
+    return 0
+
+
+@njit(cache=True)
+def fixed_length(t, y, due, plant, stepping):
+    """Length of the next fixed step [s], negative where it is too long for a body's rate."""
+    gap = due - t
+    h = gap / max(1.0, ceil(gap / stepping.step - 1e-6))
+    for b in range(plant.bodies.mass.shape[0]):
+        if plant.bodies.rigid[b] != 0 and norm(three(y, STATE * b + 10)) * h > COARSEST_TURN:
+            return -h
+    return h
+
+
+@njit(cache=True)
+def sound(t, y, plant, stepping):
+    """0, or the outcome that a state without meaning has."""
+    for j in range(y.shape[0]):
+        if not abs(y[j]) < 1e300:
+            return BROKEN
+    for b in range(plant.bodies.mass.shape[0]):
+        if height_of(t, b, y, plant) < stepping.floor:
+            return GROUND
+    return 0
+
+
+@njit(cache=True)
+def interpolated_rows(
+    t, h, last, scratch, ready, plant, inputs, schedule, stepping, boards, record, clock, loads, call, shared, work
+):
+    """Write the outputs of an adaptive step that fall in (t, last]; whether the interpolant is made."""
+    for j in range(schedule.kind.shape[0]):
+        if schedule.kind[j] != OUTPUT:
+            continue
+        due = schedule.phase[j] + schedule.count[j] * schedule.period[j]
+        while due <= last + SAME_TIME_S:
+            if not ready:
+                interpolant(t, h, plant, inputs, stepping, loads, call, shared, work)
+                ready = True
+            within(min((due - t) / h, 1.0), work, scratch)
+            write_row(due, scratch, plant, inputs, boards, record, clock, loads, call, shared, work)
+            schedule.count[j] += 1
+            due = schedule.phase[j] + schedule.count[j] * schedule.period[j]
+    return ready
+
+
+@njit(cache=True)
+def advance(t, due, y, scratch, plant, inputs, schedule, stepping, boards, events, record, clock, loads, call, shared, work):
+    """One step of the plant towards `due`; (outcome, time reached)."""
+    if stepping.adaptive:
+        h = min(clock.h[0], due - t)
+    else:
+        h = fixed_length(t, y, due, plant, stepping)
+        if h < 0.0:
+            return COARSE, t
+    refused = False
+    while True:
+        status = attempt(t, h, y, plant, inputs, stepping.hold, stepping.tableau, loads, call, shared, work)
+        if status != 0:
+            return load_outcome(status), t
+        if not stepping.adaptive:
+            break
+        error_scale(work.z, work.z1, stepping.absolute, stepping.relative, work.scale)
+        work.k[stepping.tableau.b.shape[0], :] = 0.0  # its weight in the error is zero
+        error = error_norm(h, work.k, stepping.tableau.e3, stepping.tableau.e5, work.scale)
+        proposed = next_step(h, error, stepping.tableau.order, refused)
+        if error <= 1.0:
+            # A step cut short by what was due says little about how long the next may be.
+            clock.h[0] = min(stepping.step, max(proposed, clock.h[0] if h < clock.h[0] else 0.0))
+            break
+        refused = True
+        clock.steps[1] += 1
+        h = proposed
+        clock.h[0] = h
+        if h < SHORTEST:
+            return UNDERFLOW, t
+    clock.steps[0] += 1
+    reached = due if due - (t + h) < SAME_TIME_S else t + h
+    settle(work.z1, work.start, y)
+    outcome = sound(reached, y, plant, stepping)
+    if outcome == BROKEN:
+        return outcome, reached
+    ready = False
+    part = 1.0
+    if events.kind.shape[0] > 0:
+        part = watch(t, h, y, scratch, ready, plant, inputs, stepping, events, clock, loads, call, shared, work)
+    if part < 1.0:
+        interpolant(t, h, plant, inputs, stepping, loads, call, shared, work)
+        ready = True
+        reached = t + part * h
+        outcome = STOPPED
+    if stepping.adaptive:
+        interpolated_rows(
+            t, h, reached, scratch, ready, plant, inputs, schedule, stepping, boards, record, clock, loads, call, shared, work
+        )
+    if part < 1.0:
+        within(part, work, y)
+    return outcome, reached
+
+
+@njit(cache=True)
+def fly(
+    budget,
+    y,
+    scratch,
+    plant,
+    inputs,
+    schedule,
+    stepping,
+    sensors,
+    boards,
+    tasks,
+    actuators,
+    events,
+    record,
+    clock,
+    laws,
+    memories,
+    parameters,
+    loads,
+    call,
+    shared,
+    work,
+    rng,
+):
+    """Fly on from clock.t for at most `budget` steps; the outcome, as a number."""
+    t = clock.t[0]
+    if clock.steps[0] == 0 and clock.rows[0] == 0:
+        for k in range(events.kind.shape[0]):
+            events.value[k] = quantity(t, k, y, plant, events, loads, call, shared)
+    for _ in range(budget):
+        outcome = do_due(
+            t, y, plant, inputs, schedule, sensors, boards, tasks, actuators, stepping, record, clock, laws, memories, parameters,
+            loads, call, shared, work, rng,
+        )  # fmt: skip
+        if outcome != 0:
+            return outcome
+        if t >= stepping.end - SAME_TIME_S:
+            return DONE
+        due = next_time(schedule, tasks, actuators, stepping)
+        outcome, t = advance(
+            t, due, y, scratch, plant, inputs, schedule, stepping, boards, events, record, clock, loads, call, shared, work
+        )
+        clock.t[0] = t
+        if outcome != 0:
+            return outcome
+    return PAUSED

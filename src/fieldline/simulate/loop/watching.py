@@ -1,0 +1,117 @@
+"""Events: a quantity crosses its level within a step, and the step's interpolant says when.
+
+eclipse:   sunlit fraction - 1/2                                                                       (1)
+altitude:  height over the ellipsoid - level                                                           (2)
+rate:      |omega| - level                                                                             (3)
+user:      the first number that the user's function returns for (t, state, parameters)               (4)
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from fieldline.dynamics.parameters import PLAIN_LOAD, STATE
+from fieldline.dynamics.rates import three
+from fieldline.dynamics.step import closing_rates, settle
+from fieldline.frames.geodetic import geodetic_kernel
+from fieldline.environment.eclipse import sunlit_kernel
+from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
+from fieldline.frames.matrices import matvec
+from fieldline.frames.vectors import norm
+from fieldline.integrate.dense import dense_coefficients, dense_value, hermite_coefficients
+from fieldline.integrate.roots import bracketed, evaluations, narrow, next_guess
+from fieldline.integrate.steps import combine
+from fieldline.dynamics.rates import plant_rates
+from fieldline.simulate.loop.records import ALTITUDE, ECLIPSE, RATE
+
+SHARPNESS = 1e-10  # of a step: how closely a crossing is found
+
+
+@njit(cache=True)
+def height_of(t, b, y, plant):
+    """Height over the ellipsoid [m]."""
+    dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
+    return geodetic_kernel(matvec(dcm_ei, three(y, STATE * b)))[2]
+
+
+@njit(cache=True)
+def quantity(t, k, y, plant, events, loads, call, shared):
+    """What event k watches, at state y; NaN where the user's function failed."""
+    b = events.body[k]
+    if events.kind[k] == ECLIPSE:
+        return sunlit_kernel(three(y, STATE * b), sun_kernel(t, plant.surroundings.ephemeris)) - 0.5
+    if events.kind[k] == ALTITUDE:
+        return height_of(t, b, y, plant) - events.level[k]
+    if events.kind[k] == RATE:
+        return norm(three(y, STATE * b + 10)) - events.level[k]
+    for j in range(STATE):
+        shared.state[j] = y[STATE * b + j]
+    slot = events.slot[k]
+    if slot >= PLAIN_LOAD:
+        return shared.reply[0] if call(slot, t) == 0 else float("nan")
+    return loads[slot](t, shared.state, events.parameters[events.first[k] : events.first[k + 1]])[0]
+
+
+@njit(cache=True)
+def interpolant(t, h, plant, inputs, stepping, loads, call, shared, work):
+    """Coefficients of the state within the step just taken, into work.dense."""
+    stages = stepping.tableau.b.shape[0]
+    hold = stepping.hold
+    closing_rates(t, h, plant, inputs, hold, loads, call, shared, work, stages)
+    extra = stepping.tableau.c_extra.shape[0]
+    if extra == 0:
+        hermite_coefficients(work.z, work.z1, work.k[0], work.k[stages], h, work.dense)
+        return
+    for x in range(extra):
+        row = stages + 1 + x
+        combine(work.z, h, work.k, stepping.tableau.a_extra[x], row, work.stage)
+        at = t + stepping.tableau.c_extra[x] * h
+        plant_rates(at, work.stage, work.start, plant, inputs, work.frozen, hold, loads, call, shared, work.log, work.k[row])
+    dense_coefficients(work.z, work.z1, h, work.k, stepping.tableau.d, work.dense)
+
+
+@njit(cache=True)
+def within(theta, work, y):
+    """State at the fraction theta of the step, into y."""
+    dense_value(theta, work.dense, work.z, work.stage)
+    settle(work.stage, work.start, y)
+
+
+@njit(cache=True)
+def crossing(t, h, k, before, after, y, plant, events, loads, call, shared, work):
+    """Fraction of the step at which event k happens; y is scratch."""
+    a, fa, b, fb = 0.0, before, 1.0, after
+    left = evaluations(b - a, SHARPNESS)
+    while b - a > SHARPNESS and left > 0:
+        x = next_guess(a, fa, b, fb, left, SHARPNESS)
+        within(x, work, y)
+        a, fa, b, fb = narrow(a, fa, b, fb, x, quantity(t + x * h, k, y, plant, events, loads, call, shared))
+        left -= 1
+    return b
+
+
+@njit(cache=True)
+def watch(t, h, y, scratch, ready, plant, inputs, stepping, events, clock, loads, call, shared, work):
+    """Look for crossings in the step from t to t + h that ended in y; keep them.
+
+    Returns the fraction of the step at which the run stops, 1 where it goes on. `ready`: the interpolant is made.
+    """
+    stop = 1.0
+    for k in range(events.kind.shape[0]):
+        before, after = events.value[k], quantity(t + h, k, y, plant, events, loads, call, shared)
+        events.value[k] = after
+        if not bracketed(before, after, events.direction[k]):
+            continue
+        if not ready:
+            interpolant(t, h, plant, inputs, stepping, loads, call, shared, work)
+            ready = True
+        theta = crossing(t, h, k, before, after, scratch, plant, events, loads, call, shared, work)
+        place = clock.events[0]
+        if place < events.found.shape[0]:
+            events.found[place, 0] = k
+            events.found[place, 1] = t + theta * h
+            events.found[place, 2] = 1.0 if after >= before else -1.0
+            clock.events[0] += 1
+        if events.stop[k] != 0:
+            stop = min(stop, theta)
+    return stop
