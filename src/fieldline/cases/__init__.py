@@ -1,6 +1,6 @@
 """One file per paper: its set-ups as plain functions that return Datasets.
 
-`CASES` names them for the command line; `case_named` loads one.
+`CASES` names them for the command line, with module and function; `case_named` loads one.
 """
 
 from __future__ import annotations
@@ -11,11 +11,20 @@ from typing import Any
 
 from fieldline.errors import InputError, nearest
 
-CASES = ("natanson_1990",)
+CASES = {
+    "natanson_1990": ("natanson_1990", "run"),
+    "ames_1961_field": ("ames_1961", "field"),
+    "ames_1961_pointing": ("ames_1961", "pointing"),
+    "ames_1961_dump": ("ames_1961", "dump"),
+    "ames_1961_coil": ("ames_1961", "coil"),
+    "ames_1961_observatory": ("ames_1961", "observatory"),
+}
 
 
 def case_named(name: str) -> Callable[..., Any]:
-    """The function `run` of a case, which returns a Dataset of every signal."""
-    if name not in CASES:
-        raise InputError(f'there is no case "{name}"; {nearest(name, CASES)}')
-    return import_module(f"fieldline.cases.{name}").run
+    """The function of a case, which returns a Dataset of every signal; hyphens serve as well as underscores."""
+    plain = name.replace("-", "_")
+    if plain not in CASES:
+        raise InputError(f'there is no case "{name}"; {nearest(plain, CASES)}')
+    module, function = CASES[plain]
+    return getattr(import_module(f"fieldline.cases.{module}"), function)

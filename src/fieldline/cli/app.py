@@ -9,8 +9,10 @@ from fieldline.cli.attitude import attitude
 from fieldline.cli.calibrate import calibrate
 from fieldline.cli.case import case
 from fieldline.cli.demo import demo
+from fieldline.cli.design import design
 from fieldline.cli.field import field
 from fieldline.cli.models import models
+from fieldline.cli.scenario import scenario
 
 app = typer.Typer(
     name="fieldline",
@@ -23,6 +25,8 @@ app = typer.Typer(
 
 for command in (attitude, calibrate, field, demo, case, models):
     app.command()(command)
+app.add_typer(design, name="design")
+app.add_typer(scenario, name="scenario")
 
 
 def _print_version(wanted: bool) -> None:

@@ -1,7 +1,8 @@
 """One figure for any case: truth and estimate on each other, and below them what says how good the estimate is.
 
 A variable `name` with a partner `name_true` makes a panel, a line for the truth and dots for the estimate; the floats over
-time alone (losses, errors, a discriminant) make a panel for each first word of their names.
+time alone (losses, errors, a discriminant) make a panel for each first word of their names. A case whose attribute "case"
+is known to `ames_1961_figures` is drawn there.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldline.errors import InputError
+from fieldline.report.ames_1961_figures import OWN_FIGURES, own_figure
 from fieldline.report.record import Clock
 from fieldline.report.series import legend, line, points
 from fieldline.report.theme import AXIS_COLOURS, FOURTH, INK, WARM, label_outer, panels, themed
@@ -24,7 +26,9 @@ PANEL_HEIGHT_IN = 1.55
 
 
 def case_figure(dataset: Any) -> Figure:
-    """The figure of a case's Dataset; InputError where it has nothing over time."""
+    """The figure of a case's Dataset, its own where it has one; InputError where it has nothing over time."""
+    if str(dataset.attrs.get("case", "")) in OWN_FIGURES:
+        return own_figure(dataset)
     pairs, singles = pairs_of(dataset), singles_of(dataset)
     count = len(pairs) + len(singles)
     if "time" not in dataset.coords or not count:
