@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from fieldline.constants import EARTH_ROTATION_ANGLE_TURNS_PER_DAY, SECONDS_PER_DAY
 from fieldline.environment.cubic import cubic_place
 from fieldline.environment.sun import sun_position_i
 from fieldline.errors import InputError
@@ -29,7 +30,7 @@ from fieldline.frames.earth_rotation import dcm_ei, earth_rotation_angle
 from fieldline.frames.time import as_utc
 
 NODE_STEP_S = 1800.0
-ERA_RATE_RAD_S = 2.0 * np.pi * 1.00273781191135448 / 86400.0  # IERS Conventions (2010), equation (5.15)
+ERA_RATE_RAD_S = 2.0 * np.pi * EARTH_ROTATION_ANGLE_TURNS_PER_DAY / SECONDS_PER_DAY
 DURATION_MAX_S = 3.2e9  # a century: the Sun's ephemeris ends there anyway
 
 

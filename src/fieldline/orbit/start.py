@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fieldline.environment.ephemeris import ERA_RATE_RAD_S
+from fieldline.constants import EARTH_ROTATION_ANGLE_TURNS_PER_DAY, SECONDS_PER_DAY
 from fieldline.errors import InputError, nearest
 from fieldline.frames.earth_orientation import EarthOrientation
 from fieldline.frames.earth_rotation import dcm_ei
@@ -22,6 +22,7 @@ from fieldline.orbit.orbit import MAX_AGE_DAYS, Orbit
 from fieldline.orbit.sun_synchronous import sun_synchronous_orbit
 
 AXES = ("i", "e")
+ERA_RATE_RAD_S = 2.0 * np.pi * EARTH_ROTATION_ANGLE_TURNS_PER_DAY / SECONDS_PER_DAY
 
 
 class StartState(NamedTuple):

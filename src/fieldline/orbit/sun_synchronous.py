@@ -15,13 +15,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_J2, SECONDS_PER_DAY
+from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_J2, EARTH_ROTATION_ANGLE_TURNS_PER_DAY, SECONDS_PER_DAY
 from fieldline.errors import InputError
 from fieldline.frames.earth_rotation import earth_rotation_angle
 from fieldline.frames.time import as_utc, utc_julian
 from fieldline.orbit.elements import Elements, mean_motion
 
-MEAN_SUN_RATE_RAD_S = 2.0 * np.pi * 0.00273781191135448 / SECONDS_PER_DAY  # ERA's rate less a turn a day
+MEAN_SUN_RATE_RAD_S = 2.0 * np.pi * (EARTH_ROTATION_ANGLE_TURNS_PER_DAY - 1.0) / SECONDS_PER_DAY
 
 
 def sun_synchronous_inclination(altitude_m: float, eccentricity: float = 0.0) -> float:
