@@ -9,7 +9,7 @@ usual reference (US Standard Atmosphere 1976 to 25 km, CIRA-72 for an exospheric
 holds that height's density; above its highest, density goes on falling exponentially.
 
 The real density departs from any of these: from MSIS by 15 % in the mean and by 100 % in storms; from "layered", which
-knows no Sun, by a factor of 3 either way at 400 km and of 10 at 600 km over a solar cycle.
+knows no Sun, MSIS itself differs by a factor of 4 either way at 400 km and of 7 at 600 km over a solar cycle.
 
 Source: Vallado (2013), Fundamentals of Astrodynamics and Applications, 4th ed., s. 8.6.2 and table 8-4.
 """
