@@ -60,7 +60,9 @@ def test_commands_and_options_exist(page):
     for line in told:
         words = shlex.split(line.removeprefix("$ "))
         assert words[1] in commands, line
-        known = {option for parameter in commands[words[1]].params for option in parameter.opts}
+        command = commands[words[1]]
+        command = command.commands[words[2]] if hasattr(command, "commands") and len(words) > 2 else command
+        known = {option for parameter in command.params for option in parameter.opts}
         unknown = {word.split("=")[0] for word in words[2:] if word.startswith("--")} - known - {"--help", "--debug"}
         assert not unknown, line
 

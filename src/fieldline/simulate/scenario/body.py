@@ -30,7 +30,7 @@ TURNING = (
 
 
 class AttitudeStart(Record):
-    """The table [body.attitude]: exactly one of the keys quaternion_bi, quaternion_bo, euler_321_deg and random."""
+    """How a body is turned at the start: exactly one of the keys quaternion_bi, quaternion_bo, euler_321_deg and random."""
 
     quaternion_bi: Quaternion | None = Field(default=None, description="body to GCRS, scalar last")
     quaternion_bo: Quaternion | None = Field(default=None, description="body to orbital axes, scalar last")
@@ -51,7 +51,7 @@ class AttitudeStart(Record):
 
 
 class Body(Vehicle):
-    """The table [[body]]: a vehicle, its start, its sensors. The first body starts on [orbit]."""
+    """A vehicle, its start, its sensors. The first body starts on [orbit]."""
 
     attitude: AttitudeStart | None = Field(default=None, description="attitude at the start; along the orbital axes by default")
     rate_deg_s: Vector | None = Field(default=None, description="angular rate at the start, body axes [deg/s]; zero by default")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from fieldline.errors import InputError, nearest
-from fieldline.simulate.scenario.coarseness import fastest_rate, too_coarse
+from fieldline.simulate.scenario.coarseness import too_coarse
 
 MOST_SAMPLES = 50_000_000
 NEEDS = {"dipole": "magnetorquer", "wheel_torque": "wheel", "thrust": "thruster"}
@@ -140,6 +140,6 @@ def _lengths(scenario) -> Found:
             step = len(scenario.body) * scenario.time.duration_s / MOST_SAMPLES
             yield "time.output_step_s", f"gives {samples:.3g} samples; the most is {MOST_SAMPLES:g}, which {step:.3g} s keeps to"
     for k, body in enumerate(scenario.body):
-        coarse = too_coarse(scenario.integrator, fastest_rate(body))
+        coarse = too_coarse(scenario, body)
         if coarse:
             yield "integrator.step_s", f"{coarse} (body[{k}])"

@@ -13,6 +13,8 @@ from math import hypot, radians
 
 import numpy as np
 
+from fieldline.simulate.scenario.body import SENSORS
+
 FINE_RAD = 0.1
 COARSE_RAD = 0.5
 
@@ -26,23 +28,27 @@ def fastest_rate(body) -> float:
     return max(spin, float(np.linalg.norm(stored)) / float(np.linalg.eigvalsh(body.inertia_kg_m2)[0]))
 
 
-def too_coarse(integrator, rate_rad_s: float) -> str | None:
-    """Why the step cannot follow the rate, with the step that would do; None where it can."""
-    angle = rate_rad_s * integrator.step_s
-    if integrator.method != "rk4" or angle <= COARSE_RAD:
-        return None
-    return f"is too coarse: {_angle(integrator.step_s, rate_rad_s)}; a step of {fine_step(rate_rad_s):.2g} s would do"
+def longest_step_s(scenario) -> float:
+    """The step [s] of rk4: that of the integrator, or the shorter time between readings or calls, where steps end too."""
+    rates = [task.rate_hz for task in scenario.software]
+    rates += [one.rate_hz for body in scenario.body for key in SENSORS if (one := getattr(body, key))]
+    return min([scenario.integrator.step_s, *(1.0 / rate for rate in rates)])
 
 
-def rather_coarse(integrator, rate_rad_s: float) -> str | None:
-    """A warning where the step follows the rate poorly, with the step that would do."""
-    angle = rate_rad_s * integrator.step_s
-    if integrator.method != "rk4" or not FINE_RAD < angle <= COARSE_RAD:
+def too_coarse(scenario, body) -> str | None:
+    """Why the step cannot follow a body's rotation, with the step that would do; None where it can."""
+    rate, step = fastest_rate(body), longest_step_s(scenario)
+    if scenario.integrator.method != "rk4" or rate * step <= COARSE_RAD:
         return None
-    return (
-        f"step_s is coarse for the rotation: {_angle(integrator.step_s, rate_rad_s)}; "
-        f"a step of {fine_step(rate_rad_s):.2g} s would keep a day's error small"
-    )
+    return f"is too coarse: {_angle(step, rate)}; a step of {fine_step(rate):.2g} s would do"
+
+
+def rather_coarse(scenario, body) -> str | None:
+    """A warning where the step follows a body's rotation poorly, with the step that would do."""
+    rate, step = fastest_rate(body), longest_step_s(scenario)
+    if scenario.integrator.method != "rk4" or not FINE_RAD < rate * step <= COARSE_RAD:
+        return None
+    return f"step_s is coarse for the rotation: {_angle(step, rate)}; a step of {fine_step(rate):.2g} s keeps a day's error small"
 
 
 def fine_step(rate_rad_s: float) -> float:

@@ -17,7 +17,7 @@ Vectors = Annotated[tuple[Vector, ...], Field(strict=False)]
 
 
 class Atmosphere(Record):
-    """The table [environment.atmosphere]: density of the air, which turns with the Earth."""
+    """Density of the air, which turns with the Earth."""
 
     model: Literal["none", "exponential", "layered", "msis"] = Field(
         default="none",
@@ -60,7 +60,7 @@ class Atmosphere(Record):
 
 
 class Environment(Record):
-    """The table [environment]."""
+    """Magnetic field, gravity, air and Earth rotation."""
 
     field: str = Field(default="IGRF-14", min_length=1, description="name of the field model (`fieldline models` lists them)")
     field_degree: int | None = Field(default=None, ge=1, le=200, description="highest degree of its harmonics; all by default")

@@ -13,7 +13,7 @@ THRESHOLDS = {"eclipse": None, "altitude": "altitude_km", "rate": "rate_deg_s", 
 
 
 class Event(Record):
-    """The table [[event]]: the times at which a quantity crosses its threshold are found and kept."""
+    """The times at which a quantity crosses its threshold are found and kept."""
 
     kind: Literal["eclipse", "altitude", "rate", "user"] = Field(
         description='"eclipse": half of the Sun is hidden; "altitude", "rate": a threshold; "user": a function changes its sign'

@@ -10,7 +10,7 @@ from fieldline.records import Record
 
 
 class Integrator(Record):
-    """The table [integrator]: classical Runge-Kutta of a fixed step, or Dormand-Prince 8(5,3) of an error tolerance."""
+    """Classical Runge-Kutta of a fixed step, or Dormand-Prince 8(5,3) of an error tolerance."""
 
     method: Literal["rk4", "dop853"] = Field(
         default="rk4", description='"rk4": fourth order, fixed step; "dop853": eighth order, step chosen by the error'

@@ -117,7 +117,7 @@ class SunSynchronous(Record):
 
 
 class OrbitStart(Record):
-    """The table [orbit]: exactly one of tle, elements, state and sun_synchronous."""
+    """Where a body starts: exactly one of tle, elements, state and sun_synchronous."""
 
     tle: str | None = Field(
         default=None,

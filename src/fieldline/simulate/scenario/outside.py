@@ -11,7 +11,7 @@ import numpy as np
 
 from fieldline.errors import InputError, nearest, shown
 from fieldline.simulate.scenario.checks import actuators_missing
-from fieldline.simulate.scenario.coarseness import fastest_rate, rather_coarse
+from fieldline.simulate.scenario.coarseness import rather_coarse
 
 MOST_STEPS = 1e10
 
@@ -146,7 +146,7 @@ def _laws(scenario) -> Iterator[tuple[str, str]]:
 def _warnings(scenario) -> Iterator[str]:
     """What runs, but perhaps not as meant."""
     for k, body in enumerate(scenario.body):
-        coarse = rather_coarse(scenario.integrator, fastest_rate(body))
+        coarse = rather_coarse(scenario, body)
         if coarse:
             yield f"integrator.{coarse} (body[{k}])."
     for k, task in enumerate(scenario.software):

@@ -22,7 +22,7 @@ def _numeric(value: Any) -> bool:
 
 
 class Software(Record):
-    """The table [[software]]: a task that reads the measurement of a body and commands its actuators, at its own rate."""
+    """A task that reads the measurement of a body and commands its actuators, at its own rate."""
 
     name: str = Field(default="", description="name in results and messages; the law's name by default")
     body: str = Field(default="", description="name of the body; may be left out where there is one body")

@@ -29,7 +29,7 @@ def _utc_text(value: Any) -> str:
 
 
 class Span(Record):
-    """The table [time]."""
+    """When the run starts, how long it lasts, how often its signals are kept."""
 
     start_utc: Annotated[str, BeforeValidator(_utc_text), WithJsonSchema({"type": "string", "format": "date-time"})] = Field(
         description="start of the run, UTC, ISO 8601"

@@ -61,7 +61,7 @@ def _table(table: dict[str, Any], path: str) -> Iterator[str]:
     """Plain keys first, then tables, then lists of tables, as TOML needs them."""
     for key, value in table.items():
         if not isinstance(value, dict) and not _is_tables(value):
-            yield f"{_key(key)} = {_value(value)}"
+            yield f"{_key(key)} = {inline(value)}"
     for key, value in table.items():
         inner = f"{path}.{_key(key)}".lstrip(".")
         if isinstance(value, dict):
@@ -88,14 +88,14 @@ def _text(text: str) -> str:
     return '"' + "".join(escapes.get(c, c if c.isprintable() else f"\\U{ord(c):08x}") for c in text) + '"'
 
 
-def _value(value: Any) -> str:
+def inline(value: Any) -> str:
     """A value on one line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, list | tuple):
-        return f"[{', '.join(_value(one) for one in value)}]"
+        return f"[{', '.join(inline(one) for one in value)}]"
     if isinstance(value, dict):
-        return f"{{ {', '.join(f'{_key(key)} = {_value(one)}' for key, one in value.items())} }}" if value else "{}"
+        return f"{{ {', '.join(f'{_key(key)} = {inline(one)}' for key, one in value.items())} }}" if value else "{}"
     return repr(value) if isinstance(value, int | float) else _text(str(value))

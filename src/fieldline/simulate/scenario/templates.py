@@ -1,0 +1,30 @@
+"""Scenarios to begin with: complete, commented, and each of a different kind of mission."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+from fieldline.errors import InputError, nearest
+
+TEMPLATES = {
+    "detumble": "a 3U CubeSat stops its tumble by B-dot",
+    "picosatellite": "a picosatellite at 180 deg/s per axis, bang-bang torquers",
+    "pointing": "a small satellite holds three axes by the field alone",
+    "regulator": "the same by a periodic linear-quadratic regulator",
+    "wheels": "wheels point, torquers unload them",
+    "dump": "torquers take the momentum out of wheels",
+    "passive": "a magnet and hysteresis rods, no software",
+    "observatory": "an observatory held on a star for a day",
+    "pair": "two bodies on a line",
+    "tumble": "a free tumble with a magnetometer, for telemetry",
+}
+
+
+def template(name: str, scenario_name: str) -> str:
+    """The text of a template with the scenario's name put in; InputError for an unknown one."""
+    if name not in TEMPLATES:
+        raise InputError(f'unknown template "{name}"; {nearest(name, TEMPLATES)}')
+    text = files("fieldline").joinpath("data", f"scenario_{name}.toml").read_text(encoding="utf-8")
+    from fieldline.simulate.scenario.toml import inline
+
+    return text.replace('name = "NAME"', f"name = {inline(scenario_name)}", 1)
