@@ -24,7 +24,9 @@ def as_ring(name: str, matrices, rows: int | None = None, columns: int | None = 
     ring = given[None] if given.ndim == 2 else given
     rows = rows if rows is not None or ring.ndim != 3 else ring.shape[1]
     columns = columns if columns is not None else rows
-    fits = ring.ndim == 3 and ring.shape[1:] == (rows, columns) and ring.shape[0] in ((1, count) if count > 1 else (ring.shape[0],))
+    fits = (
+        ring.ndim == 3 and ring.shape[1:] == (rows, columns) and ring.shape[0] in ((1, count) if count > 1 else (ring.shape[0],))
+    )
     if not fits or ring.shape[0] == 0:
         nodes = f"({count}, {rows}, {columns}) or " if count > 1 else f"(N, {rows}, {columns}) or "
         raise InputError(f"{name} must have shape {nodes}({rows}, {columns}); got {given.shape}.")

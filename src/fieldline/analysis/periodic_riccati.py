@@ -21,6 +21,7 @@ from fieldline.control.periodic_system import (
     held_steps,
     periodic_solution,
     product,
+    reach,
 )
 from fieldline.errors import InputError, NoEstimateError, nearest, shown
 
@@ -50,7 +51,7 @@ def periodic_regulator(a, b, q, r, period_s: float, control: str = "held"):
         steps, factor = held_steps(held)
     else:
         held = None
-        steps, factor = continuous_steps(a, b, q, r, period)
+        steps, factor = continuous_steps(a, reach(b, r), q, period)
     riccati, closed, residual, doublings = periodic_solution(steps)
     multipliers = multipliers_of(product(closed)) if doublings > 0 else np.array([np.inf])
     if doublings < 0 or residual > SETTLED or not abs(multipliers[0]) < STABLE:

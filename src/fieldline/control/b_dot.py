@@ -147,9 +147,13 @@ def b_dot_bang_bang(t, measurement, memory, params):
 
 
 _SHARED = {
-    "derivative": Parameter("", 'from "difference" of readings or "gyro"', "difference", "choice", choices=("difference", "gyro")),
+    "derivative": Parameter(
+        "", 'from "difference" of readings or "gyro"', "difference", "choice", choices=("difference", "gyro")
+    ),
     "low_pass_s": Parameter("s", "time constant of the filter on the differences; 0 is none", 0.0, "not negative"),
-    "gap_s": Parameter("s", "longest time between two readings; derived as 60 s or five calls of the law", kind="positive", derived=True),
+    "gap_s": Parameter(
+        "s", "longest time between two readings; derived as 60 s or five calls of the law", kind="positive", derived=True
+    ),
     "rate_off_deg_s": Parameter("deg/s", "below this rate across the field the law rests; 0 is never", 0.0, "not negative"),
     "rate_on_deg_s": Parameter("deg/s", "above it works again; derived as 1.5 rate_off", kind="not negative", derived=True),
 }

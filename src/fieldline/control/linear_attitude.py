@@ -35,13 +35,13 @@ def attitude_matrix(inertia_kg_m2, orbital_rate_b=(0.0, 0.0, 0.0), nadir_b=None,
     inertia (3, 3) [kg m^2]; orbital_rate_b (3,) [rad/s], its length is n; nadir_b (3,) unit vector, or None without
     gravity gradient; momentum_b (3,) of the wheels [N m s].
     """
-    J, O = np.asarray(inertia_kg_m2, dtype=float), np.asarray(orbital_rate_b, dtype=float)
-    turn, held = cross_matrix(O), cross_matrix(J @ O + np.asarray(momentum_b, dtype=float))
+    J, rate = np.asarray(inertia_kg_m2, dtype=float), np.asarray(orbital_rate_b, dtype=float)
+    turn, held = cross_matrix(rate), cross_matrix(J @ rate + np.asarray(momentum_b, dtype=float))
     stiffness = held @ turn - turn @ J @ turn
     if nadir_b is not None:
         z = np.asarray(nadir_b, dtype=float)
         down = cross_matrix(z)
-        stiffness = stiffness + 3.0 * (O @ O) * (down @ J @ down - cross_matrix(J @ z) @ down)
+        stiffness = stiffness + 3.0 * (rate @ rate) * (down @ J @ down - cross_matrix(J @ z) @ down)
     a = np.zeros((6, 6))
     a[:3, 3:] = np.eye(3)
     a[3:, :3] = np.linalg.solve(J, stiffness)

@@ -22,6 +22,7 @@ from fieldline.control.coils import dumping_moment
 from fieldline.control.law import Law, Parameter, complete
 from fieldline.control.readings import field_known, finite3, lifted, wheel_momentum_b
 from fieldline.control.residual_dipole import packed_wheels
+from fieldline.control.saturation import as_command
 from fieldline.errors import InputError
 from fieldline.frames.vectors import norm, sub
 
@@ -53,10 +54,7 @@ def dump(measurement, momentum_b, memory, m0, params, p0):
 def momentum_dump(t, measurement, memory, params):
     """The law by itself."""
     moment = dump(measurement, wheel_momentum_b(measurement, params, WHEELS), memory, 0, params, 0)
-    command = np.empty(3)
-    for j in range(3):
-        command[j] = moment[j]
-    return command
+    return as_command(moment)
 
 
 PARAMETERS = {
@@ -84,5 +82,7 @@ def _pack(table, context) -> np.ndarray:
 
 
 LAWS = (
-    Law("momentum-dump", momentum_dump, PARAMETERS, MEMORY, ("dipole",), "draws the wheels' momentum out through the field", _pack),
+    Law(
+        "momentum-dump", momentum_dump, PARAMETERS, MEMORY, ("dipole",), "draws the wheels' momentum out through the field", _pack
+    ),
 )

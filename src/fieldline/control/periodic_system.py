@@ -94,9 +94,13 @@ def _cost_scale(g: np.ndarray, q: np.ndarray) -> float:
     return float(2.0 ** np.round(0.5 * np.log2(up / down))) if up > 0.0 and down > 0.0 else 1.0
 
 
-def continuous_steps(a, b, q, r, period_s: float) -> tuple[Steps, float]:
-    """Steps of an input that may change at any time, and the factor by which their cost was multiplied."""
-    g = b @ np.linalg.solve(r, _mt(b))
+def reach(b, r) -> np.ndarray:
+    """(N, n, n) matrices b r^-1 b'."""
+    return b @ np.linalg.solve(r, _mt(b))
+
+
+def continuous_steps(a, g, q, period_s: float) -> tuple[Steps, float]:
+    """Steps of an input that may change at any time, g = b r^-1 b', and the factor by which their cost was multiplied."""
     factor = _cost_scale(g, q)
     hamiltonian = np.concatenate(
         [np.concatenate([a, -g / factor], axis=2), np.concatenate([-q * factor, -_mt(a)], axis=2)], axis=1
@@ -200,6 +204,25 @@ def periodic_solution(steps: Steps, tolerance: float = 1e-12) -> tuple[np.ndarra
     P, closed = _sweep(before, steps)
     residual = float(np.abs(P[0] - before).max() / max(np.abs(before).max(), 1e-300))
     return P, closed, residual, doublings
+
+
+def disturbance_costate(P: np.ndarray, closed: np.ndarray, push: np.ndarray) -> np.ndarray:
+    """(N, n, k) costates s of disturbances that are known: p = P x + s.
+
+    push (N, n, k): what each of k disturbances, periodic like the rest, adds to the state over a step. Backwards,
+
+        s0 = A_closed' (s1 + P1 push),   the same after a full turn                                (31a)
+    """
+    count = P.shape[0]
+
+    def turn(last):
+        s = np.empty_like(push)
+        for k in range(count - 1, -1, -1):
+            last = s[k] = closed[k].T @ (last + P[(k + 1) % count] @ push[k])
+        return s
+
+    forced = turn(np.zeros_like(push[0]))[0]
+    return turn(np.linalg.solve(np.eye(P.shape[1]) - product(closed).T, forced))
 
 
 def product(steps):

@@ -54,11 +54,7 @@ def rate_known(measurement):
 @njit(cache=True)
 def orbit_known(measurement):
     """Whether position and velocity are known on board."""
-    return (
-        measurement.valid[ORBIT] > 0.5
-        and finite3(lifted(measurement.position_i))
-        and finite3(lifted(measurement.velocity_i))
-    )
+    return measurement.valid[ORBIT] > 0.5 and finite3(lifted(measurement.position_i)) and finite3(lifted(measurement.velocity_i))
 
 
 @njit(cache=True)

@@ -1,18 +1,20 @@
-"""The dipole that a satellite carries unasked, estimated from how it turns, and cancelled.
+"""The dipole and the torque that a satellite carries unasked, estimated from how it turns, and cancelled.
 
-A Kalman filter of six states, the rate w and a constant dipole m in body axes. Between two calls
+A Kalman filter of nine states in body axes: the rate w, a constant dipole m, a constant torque c (drag on a body that flies
+the same side ahead, pressure of sunlight). Between two calls
 
-    J dw/dt = (d M + m) x B + T_g - w x (J w + H) - dH/dt + noise                                  (33)
+    J dw/dt = (d M + m) x B + c + T_g - w x (J w + H) - dH/dt + noise                              (33)
 
 with the commanded dipole M (in force for the part d of the time, the torquers' duty cycle), the field B read at both ends,
 the gravity gradient T_g where position and attitude are known, and the wheels' momentum H as they report it. The measured
-rate corrects both. What lies along B is not seen until the field has turned, a quarter of an orbit later: the covariance
-knows. Every other constant torque of body axes that changes like m x B is taken for a dipole too.
+rate corrects all. Dipole and torque are told apart, and the dipole along B is seen at all, only as the field turns in body
+axes, a quarter of an orbit later for a body that points: the covariance knows.
 
-Cancelling is to add -m to the moment: `cancel_residual` of the pointing laws, or the law `residual-dipole` by itself.
+Cancelling is to command -m, and against c the moment -B x c / B^2, which gives -c less its part along B: `cancel_residual`
+of the pointing laws, or the law `residual-dipole` by itself, which cancels m alone.
 
-Memory: a flag, the time, w, m, three covariance blocks (w w), (w m), (m m), then the field and H of the last call. Kernels
-take the place `m0` of the filter in a law's memory and `p0` of its numbers in the law's params.
+Memory: a flag, the time, the nine states, their covariance, then the field and H of the last call. Kernels take the place
+`m0` of the filter in a law's memory and `p0` of its numbers in the law's params.
 """
 
 from __future__ import annotations
@@ -20,31 +22,34 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from fieldline.constants import EARTH_GM_M3_S2
+from fieldline.constants import EARTH_GM_M3_S2, SECONDS_PER_DAY
 from fieldline.control.law import Law, Parameter, complete
 from fieldline.control.readings import attitude_known, field_known, lifted, orbit_known, rate_known, wheel_momentum_b
+from fieldline.control.saturation import as_command
 from fieldline.frames.attitude import to_body
-from fieldline.frames.matrices import (
-    IDENTITY,
-    diagonal,
-    inverse,
-    matadd,
-    matmul,
-    matmul_t,
-    matscale,
-    matsub,
-    matvec,
-    skew,
-    symmetric,
-    transpose,
-)
-from fieldline.frames.vectors import add, axpy, cross, scale, sub
+from fieldline.frames.matrices import matmul, matscale, matsub, matvec, skew
+from fieldline.frames.vectors import add, axpy, cross, dot, scale, sub
 from fieldline.mechanics.rigid_body import gravity_gradient_torque
 
-HAS, TIME, RATE, DIPOLE, P_WW, P_WM, P_MM, FIELD, MOMENTUM = 0, 1, 2, 5, 8, 17, 26, 35, 38
-MEMORY = 41
-ON, INERTIA, INVERSE, RATE_VAR, TORQUE_DENSITY, DIPOLE_VAR, DRIFT, DUTY, GAP = 0, 1, 10, 19, 20, 21, 22, 23, 24
-SIZE = 25
+STATES = 9
+HAS, TIME, RATE, DIPOLE, TORQUE, COVARIANCE = 0, 1, 2, 5, 8, 11
+FIELD = COVARIANCE + STATES * STATES
+MOMENTUM = FIELD + 3
+MEMORY = MOMENTUM + 3
+ON, INERTIA, INVERSE, RATE_VAR, NOISE_DENSITY, DIPOLE_VAR, DIPOLE_DRIFT, TORQUE_VAR, TORQUE_DRIFT = (
+    0,
+    1,
+    10,
+    19,
+    20,
+    21,
+    22,
+    23,
+    24,
+)
+DUTY, GAP = 25, 26
+SIZE = 27
+TYPICAL_FIELD = 3e-5  # T, low orbit
 ZERO = (0.0, 0.0, 0.0)
 
 
@@ -60,8 +65,14 @@ def _vector(a, k):
 
 @njit(cache=True)
 def _store(a, k, v):
-    for j in range(len(v)):
+    for j in range(3):
         a[k + j] = v[j]
+
+
+@njit(cache=True)
+def _covariance(memory, m0):
+    """The (9, 9) covariance as a view of the memory."""
+    return memory[m0 + COVARIANCE : m0 + FIELD].reshape(STATES, STATES)
 
 
 @njit(cache=True)
@@ -76,96 +87,150 @@ def _known_torque(measurement, params, p0):
 
 @njit(cache=True)
 def _predict(dt, measurement, momentum_b, memory, m0, params, p0):
-    """Rate and covariance brought to now by (33), first order in the step; the dipole stays."""
+    """The rate brought to now by (33), first order in the step; fills the rows of the rate's derivatives (3, 9)."""
     inertia, inv = _matrix(params, p0 + INERTIA), _matrix(params, p0 + INVERSE)
     rate, dipole = _vector(memory, m0 + RATE), _vector(memory, m0 + DIPOLE)
     middle = scale(0.5, add(rate, lifted(measurement.omega_bi_b)))
     field = scale(0.5, add(_vector(memory, m0 + FIELD), lifted(measurement.field_b)))
     whole = add(matvec(inertia, middle), momentum_b)
     moment = axpy(params[p0 + DUTY], lifted(measurement.dipole_b), dipole)
-    torque = add(cross(moment, field), _known_torque(measurement, params, p0))
+    torque = add(cross(moment, field), add(_vector(memory, m0 + TORQUE), _known_torque(measurement, params, p0)))
     wheels = sub(momentum_b, _vector(memory, m0 + MOMENTUM))
     push = sub(scale(dt, sub(torque, cross(middle, whole))), wheels)
     _store(memory, m0 + RATE, add(rate, matvec(inv, push)))
-    A = matadd(IDENTITY, matscale(dt, matmul(inv, matsub(skew(whole), matmul(skew(middle), inertia)))))
-    C = matscale(-dt, matmul(inv, skew(field)))
-    ww, wm, mm = _matrix(memory, m0 + P_WW), _matrix(memory, m0 + P_WM), _matrix(memory, m0 + P_MM)
-    A_wm_Ct = matmul_t(matmul(A, wm), C)
-    ww = matadd(matmul_t(matmul(A, ww), A), matadd(matmul_t(matmul(C, mm), C), matadd(A_wm_Ct, transpose(A_wm_Ct))))
-    ww = matadd(ww, matscale(dt * params[p0 + TORQUE_DENSITY], matmul_t(inv, inv)))
-    drift = dt * params[p0 + DRIFT]
-    _store(memory, m0 + P_WW, symmetric(ww))
-    _store(memory, m0 + P_WM, matadd(matmul(A, wm), matmul(C, mm)))
-    _store(memory, m0 + P_MM, matadd(mm, diagonal(drift, drift, drift)))
+    by_rate = matmul(inv, matsub(skew(whole), matmul(skew(middle), inertia)))
+    by_dipole = matscale(-1.0, matmul(inv, skew(field)))
+    rows = np.zeros((3, STATES))
+    for i in range(3):
+        for j in range(3):
+            rows[i, j] = dt * by_rate[3 * i + j]
+            rows[i, 3 + j] = dt * by_dipole[3 * i + j]
+            rows[i, 6 + j] = dt * inv[3 * i + j]
+        rows[i, i] += 1.0
+    return rows
+
+
+@njit(cache=True)
+def _spread(dt, rows, memory, m0, params, p0):
+    """Covariance after the step: only the rate's rows of the transition differ from the identity."""
+    P = _covariance(memory, m0)
+    crossed = np.zeros((3, STATES))
+    for i in range(3):
+        for j in range(STATES):
+            for k in range(STATES):
+                crossed[i, j] += rows[i, k] * P[k, j]
+    for i in range(3):
+        for j in range(3, STATES):
+            P[i, j] = crossed[i, j]
+            P[j, i] = crossed[i, j]
+    inv = params[p0 + INVERSE : p0 + INVERSE + 9]
+    for i in range(3):
+        for j in range(i, 3):
+            total = 0.0
+            for k in range(STATES):
+                total += crossed[i, k] * rows[j, k]
+            for k in range(3):
+                total += dt * params[p0 + NOISE_DENSITY] * inv[3 * i + k] * inv[3 * j + k]
+            P[i, j] = total
+            P[j, i] = total
+    for j in range(3):
+        P[3 + j, 3 + j] += dt * params[p0 + DIPOLE_DRIFT]
+        P[6 + j, 6 + j] += dt * params[p0 + TORQUE_DRIFT]
 
 
 @njit(cache=True)
 def _correct(measurement, memory, m0, params, p0):
-    """The measured rate corrects rate and dipole."""
-    ww, wm, mm = _matrix(memory, m0 + P_WW), _matrix(memory, m0 + P_WM), _matrix(memory, m0 + P_MM)
-    noise = params[p0 + RATE_VAR]
-    weight = inverse(matadd(ww, diagonal(noise, noise, noise)))
-    gain_w, gain_m = matmul(ww, weight), matmul(transpose(wm), weight)
-    rate, dipole = _vector(memory, m0 + RATE), _vector(memory, m0 + DIPOLE)
-    news = sub(lifted(measurement.omega_bi_b), rate)
-    _store(memory, m0 + RATE, add(rate, matvec(gain_w, news)))
-    _store(memory, m0 + DIPOLE, add(dipole, matvec(gain_m, news)))
-    _store(memory, m0 + P_MM, symmetric(matsub(mm, matmul(gain_m, wm))))
-    _store(memory, m0 + P_WM, matsub(wm, matmul(gain_w, wm)))
-    _store(memory, m0 + P_WW, symmetric(matsub(ww, matmul(gain_w, ww))))
+    """The measured rate corrects every state, one component after the other."""
+    P = _covariance(memory, m0)
+    state = memory[m0 + RATE : m0 + COVARIANCE]
+    gain = np.empty(STATES)
+    row = np.empty(STATES)
+    for j in range(3):
+        spread = P[j, j] + params[p0 + RATE_VAR]
+        news = measurement.omega_bi_b[j] - state[j]
+        for i in range(STATES):
+            row[i] = P[j, i]
+            gain[i] = row[i] / spread
+        for i in range(STATES):
+            state[i] += gain[i] * news
+            for k in range(STATES):
+                P[i, k] -= gain[i] * row[k]
 
 
 @njit(cache=True)
 def _begin(measurement, memory, m0, params, p0):
-    """The rate as measured; of the dipole only how large it may be, unless it was known before."""
-    noise = params[p0 + RATE_VAR]
-    if memory[m0 + HAS] == 0.0:
-        v = params[p0 + DIPOLE_VAR]
-        _store(memory, m0 + P_MM, diagonal(v, v, v))
+    """The rate as measured; of the rest what was known before a gap, or only how large it may be."""
+    P = _covariance(memory, m0)
+    for i in range(3):
+        for j in range(STATES):
+            P[i, j] = 0.0
+            P[j, i] = 0.0
+        P[i, i] = params[p0 + RATE_VAR]
+        if memory[m0 + HAS] == 0.0:
+            P[3 + i, 3 + i] = params[p0 + DIPOLE_VAR]
+            P[6 + i, 6 + i] = params[p0 + TORQUE_VAR]
     memory[m0 + HAS] = 1.0
     _store(memory, m0 + RATE, lifted(measurement.omega_bi_b))
-    _store(memory, m0 + P_WW, diagonal(noise, noise, noise))
-    _store(memory, m0 + P_WM, matscale(0.0, IDENTITY))
 
 
 @njit(cache=True)
-def residual_dipole_estimate(t, measurement, momentum_b, memory, m0, params, p0):
-    """Dipole [A m^2], body axes, as known after this call; zero where the filter is off, the last one in a gap of data."""
+def residual_estimate(t, measurement, momentum_b, memory, m0, params, p0):
+    """(dipole [A m^2], torque [N m]), body axes, as known after this call.
+
+    Both zero where the filter is off; the last ones while field or rate is missing.
+    """
     if params[p0 + ON] < 0.5:
-        return ZERO
-    if not (field_known(measurement) and rate_known(measurement)):
-        return _vector(memory, m0 + DIPOLE)
-    dt = t - memory[m0 + TIME]
-    if memory[m0 + HAS] > 0.5 and 0.0 < dt <= params[p0 + GAP]:
-        _predict(dt, measurement, momentum_b, memory, m0, params, p0)
-        _correct(measurement, memory, m0, params, p0)
-    else:
-        _begin(measurement, memory, m0, params, p0)
-    memory[m0 + TIME] = t
-    _store(memory, m0 + FIELD, lifted(measurement.field_b))
-    _store(memory, m0 + MOMENTUM, momentum_b)
-    return _vector(memory, m0 + DIPOLE)
+        return ZERO, ZERO
+    if field_known(measurement) and rate_known(measurement):
+        dt = t - memory[m0 + TIME]
+        if memory[m0 + HAS] > 0.5 and 0.0 < dt <= params[p0 + GAP]:
+            rows = _predict(dt, measurement, momentum_b, memory, m0, params, p0)
+            _spread(dt, rows, memory, m0, params, p0)
+            _correct(measurement, memory, m0, params, p0)
+        else:
+            _begin(measurement, memory, m0, params, p0)
+        memory[m0 + TIME] = t
+        _store(memory, m0 + FIELD, lifted(measurement.field_b))
+        _store(memory, m0 + MOMENTUM, momentum_b)
+    return _vector(memory, m0 + DIPOLE), _vector(memory, m0 + TORQUE)
+
+
+@njit(cache=True)
+def cancelling_moment(field_b, dipole, torque):
+    """Moment against a dipole and, as far as the field allows, a torque."""
+    return sub(scale(-1.0 / dot(field_b, field_b), cross(field_b, torque)), dipole)
 
 
 @njit(cache=True)
 def residual_dipole(t, measurement, memory, params):
-    """The law by itself: minus the estimate."""
+    """The law by itself: minus the estimated dipole."""
     momentum_b = wheel_momentum_b(measurement, params, SIZE)
-    estimate = residual_dipole_estimate(t, measurement, momentum_b, memory, 0, params, 0)
-    command = np.empty(3)
-    for j in range(3):
-        command[j] = -estimate[j]
-    return command
+    dipole, _ = residual_estimate(t, measurement, momentum_b, memory, 0, params, 0)
+    return as_command(scale(-1.0, dipole))
 
 
 FILTER_PARAMETERS = {
     "residual_std_a_m2": Parameter(
-        "A m^2", "how large the residual dipole may be, 1 sigma per axis; derived as a tenth of the torquers'", kind="positive", derived=True
+        "A m^2",
+        "how large the residual dipole may be, 1 sigma per axis; derived as a tenth of the torquers'",
+        kind="positive",
+        derived=True,
     ),
-    "residual_drift_a_m2_day": Parameter("A m^2", "how far it may wander in a day; derived as a tenth of it", kind="not negative", derived=True),
+    "residual_drift_a_m2_day": Parameter(
+        "A m^2", "how far it may wander in a day; derived as a tenth of it", kind="not negative", derived=True
+    ),
     "rate_noise_deg_s": Parameter("deg/s", "noise of the known rate, 1 sigma per axis and call", 1e-3, "positive"),
+    "residual_torque_n_m": Parameter(
+        "N m",
+        "how large a constant torque may be; derived as 0.3 of the residual dipole's in 30 microtesla",
+        kind="not negative",
+        derived=True,
+    ),
     "torque_noise_n_m": Parameter(
-        "N m", "other unknown torque; derived as a fifth of the residual dipole's in 30 microtesla", kind="positive", derived=True
+        "N m",
+        "changing unknown torque; derived as a twentieth of the residual dipole's in 30 microtesla",
+        kind="positive",
+        derived=True,
     ),
     "torque_noise_time_s": Parameter("s", "for how long that torque keeps its value", 60.0, "positive"),
     "duty_cycle": Parameter("", "part of the time for which a commanded dipole is in force", 1.0, "positive"),
@@ -181,7 +246,8 @@ def packed_filter(values: dict, context, on: bool) -> np.ndarray:
     size = values["residual_std_a_m2"]
     size = 0.1 * float(np.max(context.moment_max_a_m2)) if size is None else size
     drift = 0.1 * size if values["residual_drift_a_m2_day"] is None else values["residual_drift_a_m2_day"]
-    torque = 0.2 * size * 3e-5 if values["torque_noise_n_m"] is None else values["torque_noise_n_m"]
+    noise = 0.05 * size * TYPICAL_FIELD if values["torque_noise_n_m"] is None else values["torque_noise_n_m"]
+    torque = 0.3 * size * TYPICAL_FIELD if values["residual_torque_n_m"] is None else values["residual_torque_n_m"]
     inertia = np.asarray(context.inertia_kg_m2, dtype=float)
     return np.array(
         [
@@ -189,9 +255,11 @@ def packed_filter(values: dict, context, on: bool) -> np.ndarray:
             *inertia.ravel(),
             *np.linalg.inv(inertia).ravel(),
             np.radians(values["rate_noise_deg_s"]) ** 2,
-            2.0 * torque**2 * values["torque_noise_time_s"],  # density of a torque that forgets itself in that time
+            2.0 * noise**2 * values["torque_noise_time_s"],  # density of a torque that forgets itself in that time
             size**2,
-            drift**2 / 86400.0,
+            drift**2 / SECONDS_PER_DAY,
+            torque**2,
+            (torque * drift / size) ** 2 / SECONDS_PER_DAY,
             values["duty_cycle"],
             max(60.0, 5.0 * context.period_s),
         ]

@@ -22,8 +22,16 @@ SIZE = 5
 ZERO = (0.0, 0.0, 0.0)
 
 PARAMETERS = {
-    "target": Parameter("", '"inertial" (fixed among the stars) or "nadir" (fixed in orbital axes)', "inertial", "choice", choices=("inertial", "nadir")),
-    "attitude": Parameter("", "goal's quaternion (x, y, z, w) in those axes; v_axes = q v_body q*", (0.0, 0.0, 0.0, 1.0), "quaternion"),
+    "target": Parameter(
+        "",
+        '"inertial" (fixed among the stars) or "nadir" (fixed in orbital axes)',
+        "inertial",
+        "choice",
+        choices=("inertial", "nadir"),
+    ),
+    "attitude": Parameter(
+        "", "goal's quaternion (x, y, z, w) in those axes; v_axes = q v_body q*", (0.0, 0.0, 0.0, 1.0), "quaternion"
+    ),
 }
 
 

@@ -144,7 +144,9 @@ PARAMETERS = {
     "rate_gain_n_m_s_rad": Parameter("N m s/rad", "K_d; derived by (23)", kind="not negative", derived=True),
     "integral_gain_n_m_rad_s": Parameter("N m/(rad s)", "K_i; derived by (23)", kind="not negative", derived=True),
     "sensor_limit_arcsec": Parameter("arcsec", "largest angle that the sensor tells; 0 is no limit", 1.2, "not negative"),
-    "rate": Parameter("", 'damping from the "difference" of signals or the "gyro"', "difference", "choice", choices=("difference", "gyro")),
+    "rate": Parameter(
+        "", 'damping from the "difference" of signals or the "gyro"', "difference", "choice", choices=("difference", "gyro")
+    ),
     "low_pass_s": Parameter("s", "time constant of the filter on the difference; 0 is none", 0.0, "not negative"),
     "moment_max_a_m2": Parameter("A m^2", "where each coil saturates; derived from the torquers", kind="vector", derived=True),
 }
@@ -183,6 +185,8 @@ def _pack_two(table, context) -> np.ndarray:
 
 
 LAWS = (
-    Law("three-coil", three_coil, PARAMETERS, MEMORY, ("dipole",), "holds a line by three coils, least moment (1961)", _pack_three),
+    Law(
+        "three-coil", three_coil, PARAMETERS, MEMORY, ("dipole",), "holds a line by three coils, least moment (1961)", _pack_three
+    ),
     Law("two-coil", two_coil, PARAMETERS, MEMORY, ("dipole",), "holds a line by the coils y and z (1961)", _pack_two),
 )

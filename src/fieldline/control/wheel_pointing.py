@@ -19,7 +19,8 @@ from fieldline.control import momentum, residual_dipole, target
 from fieldline.control.law import Law, Parameter, complete
 from fieldline.control.momentum import dump, packed_dump
 from fieldline.control.readings import field_known, finite3, lifted, wheel_momentum_b
-from fieldline.control.residual_dipole import packed_filter, packed_wheels, residual_dipole_estimate
+from fieldline.control.residual_dipole import packed_filter, packed_wheels, residual_estimate
+from fieldline.control.saturation import as_command
 from fieldline.control.target import packed_target, pointing_error
 from fieldline.frames.matrices import matvec
 from fieldline.frames.vectors import add, axpy, cross, scale, sub
@@ -63,10 +64,7 @@ def pointing_torque(measurement, momentum_b, params):
 def wheel_pointing(t, measurement, memory, params):
     """Wheels alone: equation (34)."""
     torque = pointing_torque(measurement, wheel_momentum_b(measurement, params, POINTING_SIZE), params)
-    command = np.empty(3)
-    for j in range(3):
-        command[j] = torque[j]
-    return command
+    return as_command(torque)
 
 
 @njit(cache=True)
@@ -74,11 +72,11 @@ def wheel_pointing_with_desaturation(t, measurement, memory, params):
     """Dipole and wheel torque."""
     momentum_b = wheel_momentum_b(measurement, params, FILTER + residual_dipole.SIZE)
     torque = pointing_torque(measurement, momentum_b, params)
-    own = residual_dipole_estimate(t, measurement, momentum_b, memory, FILTER_MEMORY, params, FILTER)
+    dipole, own_torque = residual_estimate(t, measurement, momentum_b, memory, FILTER_MEMORY, params, FILTER)
     dumping = dump(measurement, momentum_b, memory, 0, params, DUMP)
     if field_known(measurement):
         torque = sub(torque, cross(dumping, lifted(measurement.field_b)))
-    moment = sub(dumping, own)
+    moment, torque = sub(dumping, dipole), sub(torque, own_torque)
     command = np.empty(6)
     for j in range(3):
         command[j] = moment[j]
