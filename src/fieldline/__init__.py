@@ -31,6 +31,7 @@ _HOMES = {
     "Calibration": "fieldline.estimation.calibration",
     "estimate_attitude": "fieldline.estimation",
     "write_report": "fieldline.report",
+    "simulate": "fieldline.simulate",
     "Scenario": "fieldline.simulate.scenario",
     "FieldlineError": "fieldline.errors",
     "InputError": "fieldline.errors",
@@ -52,6 +53,7 @@ __all__ = [
     "Calibration",
     "estimate_attitude",
     "write_report",
+    "simulate",
     "Scenario",
     "FieldlineError",
     "InputError",
@@ -66,6 +68,7 @@ if TYPE_CHECKING:
     from fieldline.estimation.calibration import Calibration
     from fieldline.orbit import orbit_from_positions, read_orbit
     from fieldline.report import write_report
+    from fieldline.simulate.run import simulate
     from fieldline.simulate.scenario import Scenario
     from fieldline.telemetry import Telemetry, read_telemetry
 

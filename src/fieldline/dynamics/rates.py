@@ -19,6 +19,7 @@ from math import sqrt, tan
 
 from numba import njit
 
+from fieldline.compiled import kernel
 from fieldline.dynamics.loads.hysteresis import MU0, induction_rate
 from fieldline.dynamics.loads.line import line_pull
 from fieldline.dynamics.loads.magnetic import commanded_dipole, dipole_torque, eddy_torque, row9
@@ -56,13 +57,13 @@ RAISED, WRONG_SHAPE, NOT_FINITE = 1, 2, 3  # what a user's load may do
 FIELD_STEP_S = 1.0  # over which the field's change along the orbit is taken, for the rods
 
 
-@njit(cache=True)
+@kernel
 def three(z, at):
     """Three numbers of an array as a tuple."""
     return (z[at], z[at + 1], z[at + 2])
 
 
-@njit(cache=True)
+@kernel
 def store(z, at, v):
     """A tuple as three numbers of an array."""
     z[at] = v[0]
@@ -70,14 +71,14 @@ def store(z, at, v):
     z[at + 2] = v[2]
 
 
-@njit(cache=True)
+@kernel
 def attitude_at(z, start, b):
     """q_bi of body b within a step."""
     q0 = (start[b, 0], start[b, 1], start[b, 2], start[b, 3])
     return quat_mul(q0, quat_exp(three(z, TANGENT * b + 6)))
 
 
-@njit(cache=True)
+@kernel
 def turn_rate(sigma, omega):
     """dsigma/dt of equation (2)."""
     square = dot(sigma, sigma)
@@ -90,14 +91,14 @@ def turn_rate(sigma, omega):
     return axpy(1.0, omega, axpy(0.5, bend, scale(c, cross(sigma, bend))))
 
 
-@njit(cache=True)
+@kernel
 def field_at(position_i, dcm_ei, surroundings):
     """The Earth's field [T], inertial axes."""
     field_e = field_kernel(matvec(dcm_ei, position_i), surroundings.field)
     return add(matvec(transpose(dcm_ei), field_e), three(surroundings.uniform_field_i, 0))
 
 
-@njit(cache=True)
+@kernel
 def freeze_fields(t, dt, y, plant, out):
     """Field of every body [T], inertial axes, in the middle of a step that starts at t: for the cheap option.
 
@@ -113,7 +114,7 @@ def freeze_fields(t, dt, y, plant, out):
         put(out, b, field_at(place, dcm_ei, plant.surroundings))
 
 
-@njit(cache=True)
+@kernel
 def wheel_momentum(b, z, plant):
     """Momentum of body b's wheels [N m s], body axes."""
     wheels = plant.wheels
@@ -125,7 +126,7 @@ def wheel_momentum(b, z, plant):
     return total
 
 
-@njit(cache=True)
+@kernel
 def wheel_reaction(b, z, plant, inputs, out):
     """Torque of body b's wheels on it [N m], the motors' part of (3); their momentum's rate goes to `out`."""
     wheels = plant.wheels
@@ -141,7 +142,7 @@ def wheel_reaction(b, z, plant, inputs, out):
     return reaction
 
 
-@njit(cache=True)
+@kernel
 def rods_torque(t, b, z, q, field_b, dcm_ei, plant, out):
     """Torque of body b's hysteresis rods [N m], body axes; the rates of their inductions go to `out`."""
     rods, surroundings = plant.rods, plant.surroundings
@@ -163,7 +164,7 @@ def rods_torque(t, b, z, q, field_b, dcm_ei, plant, out):
     return cross(dipole, field_b)
 
 
-@njit(cache=True)
+@kernel
 def thruster_load(b, plant, inputs):
     """Force and torque of body b's thrusters [N, N m], body axes."""
     thrusters = plant.thrusters
@@ -176,7 +177,7 @@ def thruster_load(b, plant, inputs):
     return force, torque
 
 
-@njit(cache=True)
+@kernel
 def line_end(z, start, b, point_b):
     """Attachment point of a line on body b: offset from its centre, place and velocity, inertial axes."""
     base = TANGENT * b
@@ -186,7 +187,7 @@ def line_end(z, start, b, point_b):
     return add(three(z, base), offset_i), add(three(z, base + 3), swing_i)
 
 
-@njit(cache=True)
+@kernel
 def line_loads(z, start, plant, log, out):
     """Add force_i [N] and torque_b [N m] of all lines on every body to `out` (bodies, 6)."""
     lines = plant.lines
@@ -203,7 +204,7 @@ def line_loads(z, start, plant, log, out):
         impose(log, LINES, two, scale(-1.0, pull), torque2, out)
 
 
-@njit(cache=True)
+@kernel
 def impose(log, load, b, force_i, torque_b, out):
     """Add a load to those of body b, and to the log where one is kept."""
     for j in range(3):
@@ -215,6 +216,15 @@ def impose(log, load, b, force_i, torque_b, out):
 
 
 @njit(cache=True)
+def ask(loads, slot, t, state, parameters, reply):
+    """A compiled function's answer into `reply`; how many numbers it gave. Counts references: the answer is a new array."""
+    answer = loads[slot](t, state, parameters)
+    for j in range(min(answer.shape[0], reply.shape[0])):
+        reply[j] = answer[j]
+    return answer.shape[0]
+
+
+@kernel
 def user_loads(t, z, start, plant, loads, call, shared, log, out):
     """Add the user's loads to `out`; 0, or what one of them did wrong."""
     user = plant.user
@@ -232,12 +242,11 @@ def user_loads(t, z, start, plant, loads, call, shared, log, out):
         if slot >= PLAIN_LOAD:
             if call(slot, t) != 0:
                 return RAISED
-            reply = shared.reply
-            count = shared.replies[0]
         else:
-            reply = loads[slot](t, shared.state, user.parameters[user.first[k] : user.first[k + 1]])
-            count = reply.shape[0]
-        if count != 6:
+            parameters = user.parameters[user.first[k] : user.first[k + 1]]
+            shared.replies[0] = ask(loads, slot, t, shared.state, parameters, shared.reply)
+        reply = shared.reply
+        if shared.replies[0] != 6:
             return WRONG_SHAPE
         for j in range(6):
             if not abs(reply[j]) < FINITE:
@@ -246,7 +255,7 @@ def user_loads(t, z, start, plant, loads, call, shared, log, out):
     return 0
 
 
-@njit(cache=True)
+@kernel
 def note(log, load, b, force_i, torque_b):
     """Keep a load's force and torque, where a log (loads, bodies, 6) is kept."""
     if log.shape[0] > 0:
@@ -255,7 +264,7 @@ def note(log, load, b, force_i, torque_b):
             log[load, b, 3 + j] = torque_b[j]
 
 
-@njit(cache=True)
+@kernel
 def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, hold, log, out):
     """Torque of the field on body b [N m], body axes."""
     bodies = plant.bodies
@@ -275,7 +284,7 @@ def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, hold, log, out):
     return torque
 
 
-@njit(cache=True)
+@kernel
 def surface_loads(t, b, z, q, dcm_ei, plant, log):
     """Force_i [N] and torque_b [N m] of air and light on body b."""
     bodies, surroundings = plant.bodies, plant.surroundings
@@ -295,7 +304,7 @@ def surface_loads(t, b, z, q, dcm_ei, plant, log):
     return force, torque
 
 
-@njit(cache=True)
+@kernel
 def turning(b, z, torque, plant, inputs, log, out):
     """Euler's equation (3) of body b under a torque [N m], body axes, its wheels' part added: into `out`."""
     base = TANGENT * b
@@ -309,7 +318,7 @@ def turning(b, z, torque, plant, inputs, log, out):
     store(out, base + 9, euler_rate(omega, inertia, inverse, torque))
 
 
-@njit(cache=True)
+@kernel
 def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, hold, outer, log, out):
     """Rates (1) to (3) of body b; outer (bodies, 6): loads that come from other bodies or the user."""
     surroundings, bodies = plant.surroundings, plant.bodies
@@ -347,7 +356,7 @@ def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, hold, outer, log, 
     turning(b, z, add(torque, steady), plant, inputs, log, out)
 
 
-@njit(cache=True)
+@kernel
 def plant_rates(t, z, start, plant, inputs, frozen, hold, loads, call, shared, log, out):
     """Fill `out` with dz/dt at t; 0, or the number of what a user's load did wrong.
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from fieldline.compiled import kernel
 from fieldline.dynamics.parameters import STATE, TANGENT, Plant, state_size, tangent_size
 from fieldline.dynamics.rates import freeze_fields, plant_rates, store, three
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit
@@ -72,7 +72,7 @@ def new_shared(plant: Plant) -> Shared:
     )
 
 
-@njit(cache=True)
+@kernel
 def lift(y, start, z):
     """State y as the stepper's z and the attitudes it starts from."""
     bodies = start.shape[0]
@@ -88,7 +88,7 @@ def lift(y, start, z):
         z[j] = y[j + bodies]
 
 
-@njit(cache=True)
+@kernel
 def settle(z, start, y):
     """The stepper's z as a state; equation (1)."""
     bodies = start.shape[0]
@@ -104,7 +104,7 @@ def settle(z, start, y):
         y[j + bodies] = z[j]
 
 
-@njit(cache=True)
+@kernel
 def attempt(t, h, y, plant, inputs, hold, tableau, loads, call, shared, work):
     """Stages of a step of length h from state y, leaving its end in work.z1; 0 or what a user's load did wrong."""
     lift(y, work.start, work.z)
@@ -133,7 +133,7 @@ def attempt(t, h, y, plant, inputs, hold, tableau, loads, call, shared, work):
     return 0
 
 
-@njit(cache=True)
+@kernel
 def closing_rates(t, h, plant, inputs, hold, loads, call, shared, work, row):
     """Evaluate the right-hand side at the step's end, into row `row` of k."""
     return plant_rates(t + h, work.z1, work.start, plant, inputs, work.frozen, hold, loads, call, shared, work.log, work.k[row])

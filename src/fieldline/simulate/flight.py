@@ -14,10 +14,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.dynamics.parameters import TANGENT, tangent_size
 from fieldline.dynamics.step import new_shared, new_work
-from fieldline.errors import InputError
 from fieldline.integrate.tableau import DOP853, RK4
 from fieldline.simulate.assembly import boards as made
 from fieldline.simulate.assembly.design import Design
@@ -25,11 +23,13 @@ from fieldline.simulate.assembly.functions import UserFunctions, events_of
 from fieldline.simulate.assembly.host import Host
 from fieldline.simulate.assembly.plant import plant_of
 from fieldline.simulate.assembly.software import place, software_of, tasks_of
-from fieldline.simulate.assembly.start import orbits_of, start_of
+from fieldline.simulate.assembly.start import start_of
 from fieldline.simulate.loop.fly import fly
 from fieldline.simulate.loop.records import Outcome, Stepping
+from fieldline.simulate.scenario.states import period_s, start_states
 
 FLOOR_M = 80e3  # height below which neither orbit nor air models mean anything
+NOISE_STREAM = 0x6E6F6973  # keeps the sensors' draws apart from those of the start
 CHUNK_S = 0.2  # of wall time between returns
 FIRST_CHUNK = 200  # steps
 
@@ -41,14 +41,13 @@ class Flight:
         """Everything is checked and made here; `seed` replaces the scenario's."""
         self.scenario = scenario
         self.seed = scenario.seed if seed is None else seed
-        start_seed, noise_seed = np.random.SeedSequence(self.seed).spawn(2)
-        self.rng = np.random.Generator(np.random.PCG64(noise_seed))
-        self.duration_s = scenario.time.length_s(period_of(scenario))
+        self.rng = np.random.default_rng([self.seed, NOISE_STREAM])
+        self.duration_s = scenario.time.length_s(period_s(*start_states(scenario)[0]))
         self.host = Host()
         user = UserFunctions(scenario, self.host)
         self.load_names = user.load_names
         self.plant = plant_of(scenario, self.duration_s, user.loads)
-        self.y = start_of(scenario, self.plant, np.random.default_rng(start_seed))
+        self.y = start_of(scenario, self.plant, self.seed)
         self.start = self.y.copy()
         self.shared = new_shared(self.plant)
         self.host.connect(self.shared)
@@ -101,16 +100,6 @@ class Flight:
     def complete(self) -> bool:
         """Whether the run went to its end, or to an event that was to stop it."""
         return self.outcome in (Outcome.DONE, Outcome.STOPPED) and not self.interrupted
-
-
-def period_of(scenario) -> float:
-    """Orbital period of the first body [s], from its state at the start."""
-    position, velocity = orbits_of(scenario)[0]
-    energy = 0.5 * velocity @ velocity - EARTH_GM_M3_S2 / np.linalg.norm(position)
-    if energy >= 0.0:
-        raise InputError("the first body does not stay with the Earth: its speed is that of escape. Check [orbit].")
-    axis = -0.5 * EARTH_GM_M3_S2 / energy
-    return 2.0 * np.pi * np.sqrt(axis**3 / EARTH_GM_M3_S2)
 
 
 def stepping_of(scenario, plant, duration_s: float) -> Stepping:

@@ -19,15 +19,14 @@ from __future__ import annotations
 
 from math import atan, cos, pi, tan
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.constants import MU0_OVER_4PI
 
 MU0 = 4.0 * pi * MU0_OVER_4PI
 NEARLY_FULL = 0.99999  # of saturation: beyond it the tangent of (2) has no digits left
 
 
-@njit(cache=True)
+@kernel
 def middle_field(induction, saturation, remanence, coercivity):
     """H_b [A/m] and k [m/A] of equation (2)."""
     k = tan(0.5 * pi * remanence / saturation) / coercivity
@@ -35,7 +34,7 @@ def middle_field(induction, saturation, remanence, coercivity):
     return tan(0.5 * pi * full) / k, k
 
 
-@njit(cache=True)
+@kernel
 def induction_rate(field, field_rate, induction, saturation, remanence, coercivity):
     """db/dt [T/s] at H [A/m], dH/dt [A/m/s] and b [T]; equations (3) and (4)."""
     middle, k = middle_field(induction, saturation, remanence, coercivity)
@@ -49,7 +48,7 @@ def induction_rate(field, field_rate, induction, saturation, remanence, coercivi
     return slope * part * part * field_rate
 
 
-@njit(cache=True)
+@kernel
 def resting_induction(field, saturation, remanence, coercivity):
     """Induction [T] on the middle of the loop at H [A/m]: a start without history."""
     k = tan(0.5 * pi * remanence / saturation) / coercivity

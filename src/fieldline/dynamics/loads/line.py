@@ -11,12 +11,11 @@ Source: the massless tether of the 1982 DUMBEL program (Smithsonian Astrophysica
 
 from __future__ import annotations
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.frames.vectors import dot, norm, scale, sub
 
 
-@njit(cache=True)
+@kernel
 def line_tension(stretched, rate, length, stiffness, damping):
     """T [N] at a length [m] and its rate [m/s]; equation (1)."""
     if stretched <= length:
@@ -24,7 +23,7 @@ def line_tension(stretched, rate, length, stiffness, damping):
     return max(0.0, (stiffness * (stretched - length) + damping * rate) / length)
 
 
-@njit(cache=True)
+@kernel
 def line_pull(from_i, from_rate_i, to_i, to_rate_i, length, stiffness, damping):
     """Force [N] on the end at `from_i` (the other takes its opposite), axes as given."""
     chord = sub(to_i, from_i)

@@ -17,13 +17,12 @@ from __future__ import annotations
 
 from math import exp
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.frames.matrices import matvec
 from fieldline.frames.vectors import add, axpy, cross, vec
 
 
-@njit(cache=True)
+@kernel
 def torquer_moment(t, k, torquers, inputs):
     """Moment [A m^2] of torquer k along its axis; equation (3)."""
     target = inputs.dipole_to[k]
@@ -33,7 +32,7 @@ def torquer_moment(t, k, torquers, inputs):
     return target + (inputs.dipole_from[k] - target) * exp(-(t - inputs.dipole_since[k]) / lag)
 
 
-@njit(cache=True)
+@kernel
 def commanded_dipole(t, b, torquers, inputs):
     """Dipole [A m^2] of all torquers of body b, body axes."""
     dipole = (0.0, 0.0, 0.0)
@@ -43,7 +42,7 @@ def commanded_dipole(t, b, torquers, inputs):
     return dipole
 
 
-@njit(cache=True)
+@kernel
 def row9(rows, k):
     """Row k of an (n, 9) array as a tuple."""
     return (
@@ -59,13 +58,13 @@ def row9(rows, k):
     )
 
 
-@njit(cache=True)
+@kernel
 def eddy_torque(field_b, omega, eddy):
     """Torque [N m] of equation (2), body axes."""
     return cross(matvec(eddy, cross(omega, field_b)), field_b)
 
 
-@njit(cache=True)
+@kernel
 def dipole_torque(field_b, b, bodies):
     """Torque [N m] of the residual and the induced dipole of body b, body axes."""
     return cross(add(vec(bodies.residual, b), matvec(row9(bodies.induced, b), field_b)), field_b)

@@ -15,8 +15,7 @@ Source: Montenbruck and Gill, Satellite Orbits (2000), s. 3.4 and 3.5.
 
 from __future__ import annotations
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.constants import ASTRONOMICAL_UNIT_M, EARTH_ROTATION_RATE_RAD_S
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.frames.vectors import cross, dot, norm, scale, sub
@@ -24,14 +23,14 @@ from fieldline.frames.vectors import cross, dot, norm, scale, sub
 SOLAR_PRESSURE_N_M2 = 1361.0 / 299792458.0  # at one astronomical unit
 
 
-@njit(cache=True)
+@kernel
 def drag_force(position_i, velocity_i, pole_i, density, drag_area):
     """Force [N], inertial axes; pole_i: unit vector of the Earth's axis; drag_area: C_D A [m^2]; equation (1)."""
     wind = sub(velocity_i, scale(EARTH_ROTATION_RATE_RAD_S, cross(pole_i, position_i)))
     return scale(-0.5 * density * drag_area * norm(wind), wind)
 
 
-@njit(cache=True)
+@kernel
 def solar_force(position_i, sun_i, solar_area):
     """Force [N], inertial axes; sun_i: position of the Sun [m]; solar_area: C_R A [m^2]; equation (2)."""
     to_sun = sub(sun_i, position_i)

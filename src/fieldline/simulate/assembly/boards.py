@@ -70,7 +70,7 @@ def sensors_of(scenario, plant: Plant, estimated: list[bool], middle) -> loop.Se
         rate_estimated=estimated,
     )
     field = no_field() if model is None else fresh(model.at(middle))
-    return loop.Sensors(suite=fresh(table), gyro_bias=table.gyro.bias.copy(), field=field)
+    return loop.Sensors(suite=fresh(table), gyro_bias=table.gyros.bias.copy(), field=field)
 
 
 def actuators_of(scenario, plant: Plant) -> loop.Actuators:

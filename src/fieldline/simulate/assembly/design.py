@@ -7,7 +7,7 @@ import numpy as np
 from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.mechanics.rigid_body import as_inertia9
 from fieldline.simulate.assembly.boards import onboard_model
-from fieldline.simulate.assembly.start import orbital_axes_of, orbits_of
+from fieldline.simulate.scenario.states import start_states
 
 SAMPLES_PER_ORBIT = 120
 DAY_S = 86400.0
@@ -25,7 +25,7 @@ class Design:
         from fieldline.control import DesignContext
 
         body = self._scenario.body[b]
-        position, velocity = orbits_of(self._scenario)[b]
+        position, velocity = start_states(self._scenario)[b]
         momentum = np.cross(position, velocity)
         energy = 0.5 * velocity @ velocity - EARTH_GM_M3_S2 / np.linalg.norm(position)
         axis = -0.5 * EARTH_GM_M3_S2 / energy
@@ -43,14 +43,15 @@ class Design:
 
 
 def field_along(scenario, b: int, period_s: float):
-    """(seconds, field_o, field_i) of the on-board model over the nominal orbits of a day [T].
+    """(seconds, field_o, field_i) of the on-board model over the nominal orbits of about a day [T].
 
     The orbit has the oblateness but no air; a day lets the Earth turn once under it.
     """
     from fieldline.environment.field import magnetic_field
     from fieldline.frames.earth_rotation import dcm_ei
+    from fieldline.frames.orbital import dcm_oi
 
-    position, velocity = nominal_orbit(*orbits_of(scenario)[b], period_s)
+    position, velocity = nominal_orbit(*start_states(scenario)[b], period_s)
     seconds = np.arange(len(position)) * period_s / SAMPLES_PER_ORBIT
     model = onboard_model(scenario, scenario.body[b])
     if model is None:
@@ -60,8 +61,7 @@ def field_along(scenario, b: int, period_s: float):
         turn = dcm_ei(times)
         field_e = magnetic_field(np.einsum("nij,nj->ni", turn, position), times, model)
         field_i = np.einsum("nji,nj->ni", turn, field_e)
-    axes = np.stack([orbital_axes_of(r, v)[0] for r, v in zip(position, velocity, strict=True)])
-    return seconds, np.einsum("nij,nj->ni", axes, field_i), field_i
+    return seconds, np.einsum("nij,nj->ni", dcm_oi(position, velocity), field_i), field_i
 
 
 def nominal_orbit(position, velocity, period_s: float) -> tuple[np.ndarray, np.ndarray]:

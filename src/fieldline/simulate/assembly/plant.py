@@ -26,6 +26,7 @@ from fieldline.environment.field_record import FieldParams
 from fieldline.environment.field_registry import field_model
 from fieldline.environment.gravity import gravity_model
 from fieldline.mechanics.rigid_body import as_inertia9
+from fieldline.simulate.scenario.states import earth_orientation
 
 
 def plant_of(scenario, duration_s: float, load_slots=()) -> Plant:
@@ -55,7 +56,7 @@ def surroundings_of(scenario, duration_s: float) -> Surroundings:
         field=no_field() if uniform is not None else fresh(environment.field_model().at(middle)),
         uniform_field_i=np.array(uniform if uniform is not None else (0.0, 0.0, 0.0), dtype=float),
         atmosphere=fresh(air_of(environment.atmosphere, start, duration_s)),
-        ephemeris=fresh(ephemeris_table(start, duration_s, _orientation(scenario))),
+        ephemeris=fresh(ephemeris_table(start, duration_s, earth_orientation(scenario))),
         rotating=environment.gravity != "point",
     )
 
@@ -72,16 +73,6 @@ def air_of(air, start, duration_s: float):
     if air.model == "msis":
         return atmosphere_model("msis", start_utc=start, duration_s=duration_s, f107=air.f107, f107a=air.f107_average, ap=air.ap)
     return atmosphere_model(air.model)
-
-
-def _orientation(scenario):
-    """Measured Earth orientation, where a file of it is named."""
-    named = scenario.environment.earth_orientation
-    if named is None:
-        return None
-    from fieldline.frames.earth_orientation import read_eop
-
-    return read_eop(scenario.folder / named)
 
 
 def no_field() -> FieldParams:
@@ -133,11 +124,17 @@ def _bodies(bodies) -> Bodies:
         eddy=_rows([tensor9(b.eddy_damping_n_m_s_tesla2) for b in bodies], 9),
         drag=np.array([b.drag.drag_coefficient * b.drag.area_m2 if b.drag else 0.0 for b in bodies]),
         drag_point=_rows([b.drag.center_of_pressure_b_m if b.drag else nothing for b in bodies], 3),
-        solar=np.array([b.solar_pressure.reflectivity_coefficient * b.solar_pressure.area_m2 if b.solar_pressure else 0.0 for b in bodies]),
+        solar=np.array([_pressed(b) for b in bodies]),
         solar_point=_rows([b.solar_pressure.center_of_pressure_b_m if b.solar_pressure else nothing for b in bodies], 3),
         torque_b=_rows([b.disturbance_torque_b_n_m for b in bodies], 3),
         torque_i=_rows([b.disturbance_torque_i_n_m for b in bodies], 3),
     )  # fmt: skip
+
+
+def _pressed(body) -> float:
+    """Area times reflectivity coefficient [m^2] of a body in sunlight."""
+    light = body.solar_pressure
+    return light.reflectivity_coefficient * light.area_m2 if light else 0.0
 
 
 def _rows(values, width: int) -> np.ndarray:

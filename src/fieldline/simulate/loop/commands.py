@@ -12,12 +12,11 @@ from __future__ import annotations
 
 from math import exp
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.simulate.loop.records import NEVER, SAME_TIME_S
 
 
-@njit(cache=True)
+@kernel
 def limited(wanted, limit, quantum):
     """One actuator's command; equation (1)."""
     if quantum > 0.0:
@@ -25,7 +24,7 @@ def limited(wanted, limit, quantum):
     return min(max(wanted, -limit), limit)
 
 
-@njit(cache=True)
+@kernel
 def allocate(reply, count, task, tasks, actuators, out):
     """What law `task` wants, as commands of its body's actuators into `out`; others keep NEVER. Returns numbers used."""
     body = tasks.body[task]
@@ -55,7 +54,7 @@ def allocate(reply, count, task, tasks, actuators, out):
     return at
 
 
-@njit(cache=True)
+@kernel
 def send(t, task, tasks, commands):
     """Put commands (actuators,) in the queue of a task; the oldest place is taken if it is full."""
     depth = tasks.pending.shape[1]
@@ -69,7 +68,7 @@ def send(t, task, tasks, commands):
         tasks.waiting[task, place, k] = commands[k]
 
 
-@njit(cache=True)
+@kernel
 def next_command(tasks):
     """When the next command takes effect [s], NEVER where none waits."""
     soonest = NEVER
@@ -79,7 +78,7 @@ def next_command(tasks):
     return soonest
 
 
-@njit(cache=True)
+@kernel
 def drive(t, k, value, period, plant, inputs, actuators):
     """Let actuator k do `value` from t on; a thruster for that part of `period`."""
     if k < actuators.torquers:
@@ -103,7 +102,7 @@ def drive(t, k, value, period, plant, inputs, actuators):
             actuators.until[thruster] = t + firing
 
 
-@njit(cache=True)
+@kernel
 def cease_fire(t, inputs, actuators):
     """End the firings whose time is up."""
     for k in range(actuators.until.shape[0]):
@@ -112,7 +111,7 @@ def cease_fire(t, inputs, actuators):
             actuators.until[k] = NEVER
 
 
-@njit(cache=True)
+@kernel
 def next_ceasing(actuators):
     """When the next firing ends [s]."""
     soonest = NEVER
@@ -121,7 +120,7 @@ def next_ceasing(actuators):
     return soonest
 
 
-@njit(cache=True)
+@kernel
 def obey(t, plant, inputs, tasks, actuators):
     """Let every command that is due take effect."""
     for i in range(tasks.pending.shape[0]):
@@ -138,7 +137,7 @@ def obey(t, plant, inputs, tasks, actuators):
                     drive(t, k, value, tasks.period[i], plant, inputs, actuators)
 
 
-@njit(cache=True)
+@kernel
 def switch_torquers(t, body, off, plant, inputs, actuators):
     """Duty cycle: let the torquers of a body rest, or do what was wanted last."""
     actuators.off[body] = 1 if off else 0

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from numba import njit
 
+from fieldline.compiled import kernel
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import three
 from fieldline.environment.ephemeris import dcm_ei_kernel
@@ -21,7 +22,7 @@ LAW_RAISED, LAW_SHAPE, LAW_NOT_FINITE = int(Outcome.LAW_RAISED), int(Outcome.LAW
 KNOWLEDGE = 7  # numbers of an estimator's answer
 
 
-@njit(cache=True)
+@kernel
 def measurement_of(boards, b):
     """Row b as what a law sees: views, not copies."""
     sun = boards.sun_sensor[b]
@@ -42,10 +43,10 @@ def measurement_of(boards, b):
     )
 
 
-@njit(cache=True)
+@kernel
 def refresh(t, b, y, plant, sensors, boards):
     """What is known at any time: the orbit where no receiver reads it, the wheels' speeds, the reference field."""
-    if sensors.suite.navigation.present[b] == 0.0:
+    if sensors.suite.navigations.present[b] == 0.0:
         for j in range(3):
             boards.position_i[b, j] = y[STATE * b + j]
             boards.velocity_i[b, j] = y[STATE * b + 3 + j]
@@ -65,7 +66,7 @@ def refresh(t, b, y, plant, sensors, boards):
             boards.field_i[b, j] = field_i[j] + uniform[j]
 
 
-@njit(cache=True)
+@kernel
 def believe(reply, b, boards):
     """Take an estimator's answer as what is known of attitude and rate."""
     for j in range(4):
@@ -76,7 +77,7 @@ def believe(reply, b, boards):
     boards.valid[b, RATE] = 1.0
 
 
-@njit(cache=True)
+@kernel
 def all_finite(values, count):
     """Are the first `count` numbers finite?"""
     for j in range(count):
@@ -86,6 +87,15 @@ def all_finite(values, count):
 
 
 @njit(cache=True)
+def ask(laws, slot, t, measurement, memory, params, reply):
+    """A compiled law's answer into `reply`; how many numbers it gave. Counts references: the answer is a new array."""
+    answer = laws[slot](t, measurement, memory, params)
+    for j in range(min(answer.shape[0], reply.shape[0])):
+        reply[j] = answer[j]
+    return answer.shape[0]
+
+
+@kernel
 def run_task(t, i, y, plant, sensors, boards, tasks, actuators, laws, memories, parameters, call, shared):
     """Run task i; 0 or the outcome that ends the run, with the culprit noted."""
     b = tasks.body[i]
@@ -96,11 +106,10 @@ def run_task(t, i, y, plant, sensors, boards, tasks, actuators, laws, memories, 
     if slot < 0:
         if call(i, t) != 0:
             return LAW_RAISED
-        reply = shared.reply
         count = shared.replies[0]
     else:
-        reply = laws[slot](t, measurement_of(boards, b), memories[slot], parameters[slot])
-        count = reply.shape[0]
+        count = ask(laws, slot, t, measurement_of(boards, b), memories[slot], parameters[slot], shared.reply)
+    reply = shared.reply
     shared.culprit[1] = count
     if tasks.estimator[i] != 0 and count == 0:
         return 0  # it knows nothing yet

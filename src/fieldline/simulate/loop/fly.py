@@ -13,11 +13,10 @@ from __future__ import annotations
 
 from math import ceil
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.dynamics.loads.magnetic import torquer_moment
 from fieldline.dynamics.parameters import STATE
-from fieldline.dynamics.rates import LOADS, NOT_FINITE, RAISED, field_at, plant_rates, three
+from fieldline.dynamics.rates import NOT_FINITE, RAISED, field_at, plant_rates, three
 from fieldline.dynamics.step import attempt, lift, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
@@ -25,7 +24,7 @@ from fieldline.frames.vectors import norm, put
 from fieldline.integrate.steps import error_norm, error_scale, next_step
 from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, obey, switch_torquers
 from fieldline.simulate.loop.flight_software import run_task
-from fieldline.simulate.loop.records import NEVER, OUTPUT, SAME_TIME_S, TASK, TORQUE_OFF, TORQUE_ON, Outcome
+from fieldline.simulate.loop.records import OUTPUT, SAME_TIME_S, TASK, TORQUE_OFF, TORQUE_ON, Outcome
 from fieldline.simulate.loop.sampling import sample
 from fieldline.simulate.loop.watching import height_of, interpolant, quantity, watch, within
 
@@ -36,7 +35,7 @@ COARSEST_TURN = 1.0  # [rad] of a fixed step: beyond it the wobble of a body is 
 SHORTEST = 1e-9  # [s] of an adaptive step
 
 
-@njit(cache=True)
+@kernel
 def load_outcome(status):
     """The outcome of what a user's load did wrong."""
     if status == RAISED:
@@ -44,7 +43,7 @@ def load_outcome(status):
     return LOAD_NOT_FINITE if status == NOT_FINITE else LOAD_SHAPE
 
 
-@njit(cache=True)
+@kernel
 def next_time(schedule, tasks, actuators, stepping):
     """When anything is due next that the plant must be stepped to [s]; outputs bind fixed steps only."""
     soonest = min(stepping.end, min(next_command(tasks), next_ceasing(actuators)))
@@ -54,7 +53,7 @@ def next_time(schedule, tasks, actuators, stepping):
     return soonest
 
 
-@njit(cache=True)
+@kernel
 def write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, work):
     """Keep the state and what goes with it."""
     row = clock.rows[0]
@@ -62,7 +61,8 @@ def write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, w
         return
     clock.rows[0] = row + 1
     record.seconds[row] = t
-    record.state[row, :] = y
+    for j in range(y.shape[0]):
+        record.state[row, j] = y[j]
     surroundings = plant.surroundings
     dcm_ei = dcm_ei_kernel(t, surroundings.ephemeris)
     sun_i = sun_kernel(t, surroundings.ephemeris)
@@ -87,7 +87,7 @@ def write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, w
         plant_rates(t, record.z, record.start, plant, inputs, work.frozen, False, loads, call, shared, log, record.rate)
 
 
-@njit(cache=True)
+@kernel
 def do_due(
     t,
     y,
@@ -133,7 +133,7 @@ def do_due(
     return 0
 
 
-@njit(cache=True)
+@kernel
 def fixed_length(t, y, due, plant, stepping):
     """Length of the next fixed step [s], negative where it is too long for a body's rate."""
     gap = due - t
@@ -144,7 +144,7 @@ def fixed_length(t, y, due, plant, stepping):
     return h
 
 
-@njit(cache=True)
+@kernel
 def sound(t, y, plant, stepping):
     """0, or the outcome that a state without meaning has."""
     for j in range(y.shape[0]):
@@ -156,7 +156,7 @@ def sound(t, y, plant, stepping):
     return 0
 
 
-@njit(cache=True)
+@kernel
 def interpolated_rows(
     t, h, last, scratch, ready, plant, inputs, schedule, stepping, boards, record, clock, loads, call, shared, work
 ):
@@ -176,7 +176,7 @@ def interpolated_rows(
     return ready
 
 
-@njit(cache=True)
+@kernel
 def advance(t, due, y, scratch, plant, inputs, schedule, stepping, boards, events, record, clock, loads, call, shared, work):
     """One step of the plant towards `due`; (outcome, time reached)."""
     if stepping.adaptive:
@@ -230,7 +230,7 @@ def advance(t, due, y, scratch, plant, inputs, schedule, stepping, boards, event
     return outcome, reached
 
 
-@njit(cache=True)
+@kernel
 def fly(
     budget,
     y,

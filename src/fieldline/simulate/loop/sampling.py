@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.dynamics.loads.magnetic import commanded_dipole
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import field_at, three
@@ -20,7 +19,7 @@ from fieldline.simulate.loop.flight_software import measurement_of
 from fieldline.simulate.loop.records import GYRO, MAGNETOMETER, NAVIGATION, STAR_TRACKER, SUN_SENSOR
 
 
-@njit(cache=True)
+@kernel
 def keep(t, row, values, record, clock):
     """Store a reading with the row of the schedule that it comes from."""
     place = clock.samples[0]
@@ -32,7 +31,7 @@ def keep(t, row, values, record, clock):
             record.samples[place, 2 + j] = values[j]
 
 
-@njit(cache=True)
+@kernel
 def sample(t, row, kind, b, y, plant, inputs, sensors, boards, schedule, record, clock, rng):
     """Read one sensor of body b."""
     board = measurement_of(boards, b)
@@ -45,22 +44,22 @@ def sample(t, row, kind, b, y, plant, inputs, sensors, boards, schedule, record,
         dipole = commanded_dipole(t, b, plant.torquers, inputs)
         for j in range(3):
             board.dipole_b[j] = dipole[j]
-        read_magnetometer(t, field_b, dipole, suite.magnetometer, b, rng, board)
+        read_magnetometer(t, field_b, dipole, suite.magnetometers, b, rng, board)
         keep(t, row, board.field_b, record, clock)
     elif kind == GYRO:
         first = schedule.count[row] <= 1
-        read_gyro(omega, 0.0 if first else schedule.period[row], suite.gyro, sensors.gyro_bias, b, rng, board)
+        read_gyro(omega, 0.0 if first else schedule.period[row], suite.gyros, sensors.gyro_bias, b, rng, board)
         keep(t, row, board.rate_b, record, clock)
     elif kind == NAVIGATION:
-        read_navigation(r, v, suite.navigation, b, rng, board)
+        read_navigation(r, v, suite.navigations, b, rng, board)
         keep(t, row, board.position_i, record, clock)
     else:
         sun_i = sun_kernel(t, plant.surroundings.ephemeris)
         sun_b = to_body(q, unit(sub(sun_i, r)))
         sunlit = sunlit_kernel(r, sun_i)
         if kind == SUN_SENSOR:
-            read_sun_sensor(sun_b, sunlit, to_body(q, r), suite.sun_sensor, b, rng, board)
+            read_sun_sensor(sun_b, sunlit, to_body(q, r), suite.sun_sensors, b, rng, board)
             keep(t, row, board.sun_sensor, record, clock)
         elif kind == STAR_TRACKER:
-            read_star_tracker(q, omega, sun_b, sunlit, to_body(q, r), suite.star_tracker, b, rng, board)
+            read_star_tracker(q, omega, sun_b, sunlit, to_body(q, r), suite.star_trackers, b, rng, board)
             keep(t, row, board.q_bi, record, clock)

@@ -8,33 +8,31 @@ user:      the first number that the user's function returns for (t, state, para
 
 from __future__ import annotations
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.dynamics.parameters import PLAIN_LOAD, STATE
-from fieldline.dynamics.rates import three
+from fieldline.dynamics.rates import ask, plant_rates, three
 from fieldline.dynamics.step import closing_rates, settle
-from fieldline.frames.geodetic import geodetic_kernel
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
+from fieldline.frames.geodetic import geodetic_kernel
 from fieldline.frames.matrices import matvec
 from fieldline.frames.vectors import norm
 from fieldline.integrate.dense import dense_coefficients, dense_value, hermite_coefficients
 from fieldline.integrate.roots import bracketed, evaluations, narrow, next_guess
 from fieldline.integrate.steps import combine
-from fieldline.dynamics.rates import plant_rates
 from fieldline.simulate.loop.records import ALTITUDE, ECLIPSE, RATE
 
 SHARPNESS = 1e-10  # of a step: how closely a crossing is found
 
 
-@njit(cache=True)
+@kernel
 def height_of(t, b, y, plant):
     """Height over the ellipsoid [m]."""
     dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
     return geodetic_kernel(matvec(dcm_ei, three(y, STATE * b)))[2]
 
 
-@njit(cache=True)
+@kernel
 def quantity(t, k, y, plant, events, loads, call, shared):
     """What event k watches, at state y; NaN where the user's function failed."""
     b = events.body[k]
@@ -49,10 +47,12 @@ def quantity(t, k, y, plant, events, loads, call, shared):
     slot = events.slot[k]
     if slot >= PLAIN_LOAD:
         return shared.reply[0] if call(slot, t) == 0 else float("nan")
-    return loads[slot](t, shared.state, events.parameters[events.first[k] : events.first[k + 1]])[0]
+    parameters = events.parameters[events.first[k] : events.first[k + 1]]
+    count = ask(loads, slot, t, shared.state, parameters, shared.reply)
+    return shared.reply[0] if count > 0 else float("nan")
 
 
-@njit(cache=True)
+@kernel
 def interpolant(t, h, plant, inputs, stepping, loads, call, shared, work):
     """Coefficients of the state within the step just taken, into work.dense."""
     stages = stepping.tableau.b.shape[0]
@@ -70,14 +70,14 @@ def interpolant(t, h, plant, inputs, stepping, loads, call, shared, work):
     dense_coefficients(work.z, work.z1, h, work.k, stepping.tableau.d, work.dense)
 
 
-@njit(cache=True)
+@kernel
 def within(theta, work, y):
     """State at the fraction theta of the step, into y."""
     dense_value(theta, work.dense, work.z, work.stage)
     settle(work.stage, work.start, y)
 
 
-@njit(cache=True)
+@kernel
 def crossing(t, h, k, before, after, y, plant, events, loads, call, shared, work):
     """Fraction of the step at which event k happens; y is scratch."""
     a, fa, b, fb = 0.0, before, 1.0, after
@@ -90,7 +90,7 @@ def crossing(t, h, k, before, after, y, plant, events, loads, call, shared, work
     return b
 
 
-@njit(cache=True)
+@kernel
 def watch(t, h, y, scratch, ready, plant, inputs, stepping, events, clock, loads, call, shared, work):
     """Look for crossings in the step from t to t + h that ended in y; keep them.
 

@@ -1,0 +1,1 @@
+"""What acts on bodies, one phenomenon a file: equations and kernels."""

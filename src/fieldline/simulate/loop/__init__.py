@@ -1,0 +1,1 @@
+"""The compiled loop that flies the plant under its flight software."""

@@ -1,0 +1,214 @@
+"""A flight as an xarray Dataset: every signal with its unit, axes and meaning, and where it comes from."""
+
+from __future__ import annotations
+
+import json
+from importlib import metadata
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldline.dynamics.parameters import STATE
+from fieldline.dynamics.rates import LOADS
+from fieldline.frames.matrices import matvec
+from fieldline.simulate.assembly.boards import KINDS
+from fieldline.simulate.assembly.plant import each
+from fieldline.simulate.loop.records import TASK
+from fieldline.simulate.outcome import sentence
+
+if TYPE_CHECKING:
+    import xarray
+
+AXES = ["x", "y", "z"]
+SENSOR_UNITS = {
+    "magnetometer": ("T", "reading of the magnetometer", "b"),
+    "gyro": ("rad s-1", "reading of the gyro", "b"),
+    "sun_sensor": ("1", "readings of the sun sensors", "faces"),
+    "star_tracker": ("1", "attitude by the star tracker, scalar last", "bi"),
+    "navigation": ("m", "position as known on board", "i"),
+}
+
+
+def dataset_of(flight) -> xarray.Dataset:
+    """Everything that a flight has simulated so far."""
+    import xarray
+
+    rows = int(flight.clock.rows[0])
+    start = flight.scenario.time.start
+    seconds = flight.record.seconds[:rows]
+    time = start + np.round(1e9 * seconds).astype("timedelta64[ns]")
+    data = xarray.Dataset(
+        coords={
+            "time": time,
+            "seconds": ("time", seconds, {"units": "s", "long_name": "time since the start"}),
+            "body": [body.name for body in flight.scenario.body],
+            "axis": AXES,
+            "quaternion": ["x", "y", "z", "w"],
+        }
+    )
+    _motion(data, flight, rows)
+    _surroundings(data, flight, rows)
+    _loads(data, flight, rows)
+    _actuators(data, flight, rows)
+    _known(data, flight, rows)
+    _readings(data, flight, start)
+    _events(data, flight, start)
+    data.attrs = attributes(flight)
+    return data
+
+
+def _put(data, name: str, dims, values, units: str, long_name: str, axes: str = "") -> None:
+    """One variable with its attributes."""
+    attrs = {"units": units, "long_name": long_name}
+    data[name] = (dims, values, attrs | ({"axes": axes} if axes else {}))
+
+
+def _bodies(flight, rows: int) -> np.ndarray:
+    """(rows, bodies, 13) states."""
+    count = len(flight.scenario.body)
+    return flight.record.state[:rows, : STATE * count].reshape(rows, count, STATE)
+
+
+def _motion(data, flight, rows: int) -> None:
+    """Place, velocity, attitude and rate."""
+    state = _bodies(flight, rows)
+    vector = ("time", "body", "axis")
+    _put(data, "position_i", vector, state[..., 0:3], "m", "position from the Earth's centre", "i")
+    _put(data, "velocity_i", vector, state[..., 3:6], "m s-1", "velocity", "i")
+    _put(data, "q_bi", ("time", "body", "quaternion"), state[..., 6:10], "1", "attitude, scalar last: body to inertial", "bi")
+    _put(data, "omega_bi_b", vector, state[..., 10:13], "rad s-1", "angular rate", "b")
+
+
+def _surroundings(data, flight, rows: int) -> None:
+    """Field, Sun, place over the ground."""
+    from scipy.spatial.transform import Rotation
+
+    from fieldline.environment.ephemeris import dcm_ei_kernel
+    from fieldline.frames.earth_rotation import geodetic_from_itrs
+
+    state, field_i = _bodies(flight, rows), flight.record.field_i[:rows]
+    count = state.shape[1]
+    turned = Rotation.from_quat(state[..., 6:10].reshape(-1, 4)).inv().apply(field_i.reshape(-1, 3))
+    ephemeris = flight.plant.surroundings.ephemeris
+    place_e = np.empty((rows, count, 3))
+    for k, t in enumerate(flight.record.seconds[:rows]):
+        dcm_ei = dcm_ei_kernel(t, ephemeris)
+        for b in range(count):
+            place_e[k, b] = matvec(dcm_ei, tuple(state[k, b, :3]))
+    latitude, longitude, height = geodetic_from_itrs(place_e)
+    vector, scalar = ("time", "body", "axis"), ("time", "body")
+    _put(data, "field_i", vector, field_i, "T", "the Earth's magnetic field", "i")
+    _put(data, "field_b", vector, turned.reshape(rows, count, 3), "T", "the Earth's magnetic field", "b")
+    _put(data, "sunlit", scalar, flight.record.sunlit[:rows], "1", "visible part of the Sun's disc")
+    _put(data, "latitude_deg", scalar, np.degrees(latitude), "degree", "geodetic latitude")
+    _put(data, "longitude_deg", scalar, np.degrees(longitude), "degree", "longitude, east positive")
+    _put(data, "altitude_m", scalar, height, "m", "height over the WGS 84 ellipsoid")
+
+
+def _loads(data, flight, rows: int) -> None:
+    """Force and torque of every load that did anything."""
+    log = flight.record.loads[:rows]
+    acting = [k for k in range(len(LOADS)) if np.any(log[:, k])]
+    data.coords["load"] = [LOADS[k] for k in acting]
+    dims = ("time", "load", "body", "axis")
+    _put(data, "force_i", dims, log[:, acting, :, 0:3], "N", "force of each load", "i")
+    _put(data, "torque_b", dims, log[:, acting, :, 3:6], "N m", "torque of each load", "b")
+
+
+def _actuators(data, flight, rows: int) -> None:
+    """Torquers, wheels, thrusters and rods, each kind that there is."""
+    bodies = flight.scenario.body
+    count, at = len(bodies), 0
+    for kind, name, units, words in (
+        ("magnetorquer", "torquer_moment", "A m2", "dipole of each torquer along its axis"),
+        ("wheel", "wheel_torque", "N m", "motor torque on each wheel, as commanded"),
+        ("thruster", "thrust", "1", "thrust over full thrust"),
+    ):
+        names = _names(bodies, kind)
+        if names:
+            data.coords[kind] = names
+            _put(data, name, ("time", kind), flight.record.actuators[:rows, at : at + len(names)], units, words)
+        at += len(names)
+    wheels, rods = _names(bodies, "wheel"), each(bodies, "hysteresis_rod")
+    rest = flight.record.state[:rows, STATE * count :]
+    if wheels:
+        _put(data, "wheel_momentum", ("time", "wheel"), rest[:, : len(wheels)], "N m s", "momentum of each wheel about its axis")
+    if rods:
+        data.coords["rod"] = [f"{bodies[b].name}.rod_{k + 1}" for k, (b, _) in enumerate(rods)]
+        _put(data, "rod_induction", ("time", "rod"), rest[:, len(wheels) :], "T", "induction of each hysteresis rod")
+
+
+def _names(bodies, kind: str) -> list[str]:
+    """body.actuator of all of a kind, in the plant's order."""
+    return [f"{body.name}.{name}" for body in bodies for name in body.names_of(kind)]
+
+
+def _known(data, flight, rows: int) -> None:
+    """Attitude and rate as known on board, where anything is known."""
+    known = flight.record.known[:rows]
+    if np.isfinite(known[..., :4]).any():
+        _put(data, "q_bi_known", ("time", "body", "quaternion"), known[..., :4], "1", "attitude as known on board", "bi")
+    if np.isfinite(known[..., 4:]).any():
+        _put(data, "omega_bi_b_known", ("time", "body", "axis"), known[..., 4:], "rad s-1", "rate as known on board", "b")
+
+
+def _readings(data, flight, start) -> None:
+    """Every sensor's readings, on times of their own: `magnetometer_NAME` over `time_magnetometer_NAME`."""
+    samples = flight.record.samples[: int(flight.clock.samples[0])]
+    kinds = {number: key for key, number in KINDS.items()}
+    for j, (kind, who) in enumerate(zip(flight.schedule.kind, flight.schedule.who, strict=True)):
+        if kind == TASK or kind not in kinds:
+            continue
+        key, body = kinds[kind], flight.scenario.body[who]
+        mine = samples[samples[:, 0] == j]
+        units, words, axes = SENSOR_UNITS[key]
+        width = {"star_tracker": 4, "sun_sensor": len(body.sun_sensor.normals_b) if body.sun_sensor else 0}.get(key, 3)
+        column = {"star_tracker": "quaternion", "sun_sensor": f"face_{body.name}"}.get(key, "axis")
+        clock = f"time_{key}_{body.name}"
+        data.coords[clock] = start + np.round(1e9 * mine[:, 1]).astype("timedelta64[ns]")
+        _put(data, f"{key}_{body.name}", (clock, column), mine[:, 2 : 2 + width], units, words, axes)
+        if key == "sun_sensor":
+            data[f"sun_sensor_normal_{body.name}"] = ((column, "axis"), np.array(body.sun_sensor.normals_b))
+
+
+def _events(data, flight, start) -> None:
+    """Times, names and directions of the events that were found."""
+    if not flight.scenario.event:
+        return
+    found = flight.events.found[: min(int(flight.clock.events[0]), len(flight.events.found))]
+    found = found[found[:, 1] <= flight.clock.t[0] + 1e-9]
+    found = found[np.argsort(found[:, 1], kind="stable")]
+    names = [event.name or event.kind for event in flight.scenario.event]
+    data["event_time"] = ("event", start + np.round(1e9 * found[:, 1]).astype("timedelta64[ns]"))
+    data["event_name"] = ("event", np.array([names[int(k)] for k in found[:, 0]], dtype=object))
+    data["event_direction"] = ("event", found[:, 2].astype(np.int8), {"long_name": "1 rising, -1 falling"})
+
+
+def attributes(flight) -> dict:
+    """Provenance: scenario, seed, models, versions, outcome."""
+    scenario = flight.scenario
+    model = scenario.environment.field_model()
+    end = scenario.time.start + np.timedelta64(round(1e9 * flight.duration_s), "ns")
+    provenance = {
+        "versions": {name: metadata.version(name) for name in ("fieldline", "numba", "numpy", "pyerfa")},
+        "scenario": scenario.name,
+        "scenario_sha256": scenario.sha256,
+        "seed": flight.seed,
+        "field_model": "uniform" if model is None else model.stamp([scenario.time.start, end]),
+        "gravity": scenario.environment.gravity,
+        "atmosphere": scenario.environment.atmosphere.model,
+        "method": scenario.integrator.method,
+        "steps": {"taken": int(flight.clock.steps[0]), "refused": int(flight.clock.steps[1])},
+        "laws": [
+            {"task": task.name, "law": task.record.law, "rate_hz": task.record.rate_hz, "runs": int(runs), **task.settings}
+            for task, runs in zip(flight.software, flight.tasks.runs, strict=True)
+        ],
+    }
+    return {
+        "title": scenario.name,
+        "complete": int(flight.complete),
+        "outcome": sentence(flight),
+        "scenario_toml": scenario.to_toml(),
+        "provenance_json": json.dumps(provenance, sort_keys=True),
+        "Conventions": "CF-1.11",
+    }
