@@ -58,6 +58,8 @@ def pointing_figure(dataset: Any) -> Figure:
 
 def dump_figure(dataset: Any) -> Figure:
     """Components of the momentum, and what is left of it with its part along the field."""
+    from matplotlib.ticker import FuncFormatter
+
     figure, axes = panels(2, 1, height_in=4.6, row_gap=0.3)
     time = dataset["seconds"].values / dataset.attrs["period_s"]
     draw_components(axes[0, 0], time, dataset["momentum"].values)
@@ -68,6 +70,7 @@ def dump_figure(dataset: Any) -> Figure:
     line(axes[1, 0], time, size, INK, "|H|", width=1.3)
     line(axes[1, 0], time, np.abs(dataset["along_field"].values), FOURTH, "|H| along the field")
     axes[1, 0].set_yscale("log")
+    axes[1, 0].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes[1, 0].set_ylim(0.5 * size.min(), 1.6 * size.max())
     axes[1, 0].set_ylabel("[N m s]")
     legend(axes[1, 0])
@@ -86,11 +89,10 @@ def observatory_figure(dataset: Any) -> Figure:
     time, label = clock(dataset)
     for k, name in enumerate("yz"):
         line(axes[0, 0], time, dataset["error"].values[:, k], AXIS_COLOURS[k + 1], name)
-    share = 100.0 * float(dataset["within_fraction"])
-    axes[0, 0].set_title(f"{dataset.attrs['title']}: {share:.2f} % of the time within 0.1 arcsec")
+    share, limit = 100.0 * float(dataset["within_fraction"]), dataset.attrs["tolerance_arcsec"]
+    axes[0, 0].set_title(f"{dataset.attrs['title']}: {share:.2f} % of the time within {limit:g} arcsec")
     axes[0, 0].set_ylabel("error [arcsec]")
-    axes[0, 0].set_yscale("symlog", linthresh=0.1)
-    axes[0, 0].axhspan(-0.1, 0.1, color=FAINT, linewidth=0)
+    axes[0, 0].axhspan(-limit, limit, color=FAINT, linewidth=0)
     legend(axes[0, 0])
     line(axes[1, 0], time, dataset["along_line"].values, INK)
     axes[1, 0].axhspan(-0.05, 0.05, color=FAINT, linewidth=0)

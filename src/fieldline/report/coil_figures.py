@@ -13,7 +13,7 @@ HEIGHT_IN = 3.9
 
 
 def trade_figure(mass_kg: Any, power_w: Any, chosen_kg: float, chosen_w: float, words: str) -> Figure:
-    """Power [W] against mass [kg] on logarithmic axes, with the chosen point and the lines of equal m + k P through it."""
+    """Power [W] against mass [kg] on logarithmic axes, with the chosen point."""
     with themed():
         figure, axes = panels(1, 1, height_in=HEIGHT_IN)
         one = axes[0, 0]

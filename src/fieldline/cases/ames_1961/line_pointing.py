@@ -33,7 +33,8 @@ MOMENT_LIMIT_A_M2 = 50.0
 NATURAL_RATE_RAD_S = 0.1
 DAMPING = 0.7
 SETTLED_ARCSEC = 0.1
-TRANSVERSE = ("equal", "y-zero", "z-zero")
+WORDS = {"equal": "B_y = B_z", "y-zero": "B_y = 0", "z-zero": "B_z = 0"}
+TRANSVERSE = tuple(WORDS)
 FIELD_STEP_S = 0.05  # of a turning field's table
 
 
@@ -101,7 +102,7 @@ def pointing(
     flown = flown_of(state, seconds, field_i, field_step, step_s, vehicle)
     dataset = dataset_of(flown, seconds, vehicle, sensor_limit_arcsec)
     dataset.attrs.update(
-        title=f"{coils} coils, B_x/B = {field_ratio:g}, {transverse}, from {tuple(float(e) for e in error_arcsec)} arcsec",
+        title=f"{coils} coils, B_x/B = {field_ratio:g}, {WORDS[transverse]}, from {_shown(error_arcsec)} arcsec",
         case="ames_1961_pointing",
         source=f"{SOURCE}; constants assumed",
         settings_json=_json(settings),
@@ -261,6 +262,10 @@ def _field_table(field_tesla: float, ratio: float, ratio_rate: float, transverse
     across = np.sqrt(1.0 - along * along)
     y, z = {"equal": (np.sqrt(0.5), np.sqrt(0.5)), "y-zero": (0.0, 1.0), "z-zero": (1.0, 0.0)}[transverse]
     return field_tesla * np.stack([along, y * across, z * across], axis=1), float(seconds[1])
+
+
+def _shown(pair) -> str:
+    return " and ".join(f"{value:g}" for value in pair)
 
 
 def _json(settings: dict) -> str:

@@ -200,4 +200,5 @@ def _provenance(settings: dict) -> dict:
         "case": "ames_1961_observatory",
         "source": f"{SOURCE}; scenario beyond the study",
         "settings_json": json.dumps(settings),
+        "tolerance_arcsec": float(settings["tolerance_arcsec"]),
     }
