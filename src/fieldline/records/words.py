@@ -47,21 +47,22 @@ def _sentences(one: Any, model: type[BaseModel]) -> Iterator[str]:
         for key, text in cause.found:
             inner = path_of(one["loc"])
             joint = "" if not inner or not key or key.startswith("[") else "."
-            yield _joined(f"{inner}{joint}{key}", text)
+            yield joined(f"{inner}{joint}{key}", text)
     elif cause is not None:
-        yield _joined(path_of(one["loc"]), str(cause))
+        yield joined(path_of(one["loc"]), str(cause))
     elif one["type"] == "extra_forbidden":
         yield _unknown(one["loc"], model)
     else:
-        yield _joined(path_of(one["loc"]), _expectation(one, model))
+        yield joined(path_of(one["loc"]), _expectation(one, model))
 
 
-def _joined(path: str, text: str) -> str:
-    """Path and sentence."""
+def joined(path: str, text: str) -> str:
+    """Path and sentence, without a character that a terminal would obey."""
+    text = "".join(c if c.isprintable() else "?" for c in text)
     text = text if text.endswith((".", "?")) else text + "."
     if not path:
         return text
-    return f"{path} {text}" if text.startswith(("must ", "has ", "is ", "are ", "names ", "gives ")) else f"{path}: {text}"
+    return f"{path} {text}" if text.startswith(("must ", "has ", "is ", "names ", "gives ", "needs ")) else f"{path}: {text}"
 
 
 def _expectation(one: Any, model: type[BaseModel]) -> str:
@@ -78,6 +79,8 @@ def _expectation(one: Any, model: type[BaseModel]) -> str:
         near = nearest(str(one["input"]), known) if isinstance(one["input"], str) else ""
         listed = " or ".join(f'"{word}"' for word in known)
         return f"must be {listed}; got {came(one['input'])}{'; ' + near if near.startswith('did') else ''}"
+    if kind == "tuple_type" and model_at(one["loc"], model):
+        return f"must be a list of tables, each begun with [[{path_of(one['loc'])}]]; got {came(one['input'])}"
     if kind in ("too_short", "string_too_short"):
         return f"must not be empty; got {came(one['input'])}"
     return f"{KINDS.get(kind, one['msg'].lower())}; got {came(one['input'])}"

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fieldline.errors import InputError, nearest, shown
+from fieldline.records.words import joined
 from fieldline.simulate.scenario.checks import actuators_missing
 from fieldline.simulate.scenario.coarseness import rather_coarse
 
@@ -25,7 +26,7 @@ def check(scenario) -> list[str]:
     if states is not None:
         found += _span(scenario, states)
     if found:
-        texts = [f"{path}: {text}" for path, text in found]
+        texts = [joined(path, text) for path, text in found]
         if len(texts) == 1:
             raise InputError(f"{scenario.name}: {texts[0]}")
         raise InputError(f"{scenario.name} has {len(texts)} problems:\n  " + "\n  ".join(texts))

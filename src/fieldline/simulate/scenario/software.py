@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from fieldline.records import Record, RecordError
 from fieldline.records.words import came
@@ -12,6 +12,13 @@ from fieldline.vehicle.user_load import is_function_name
 
 Command = Literal["dipole", "wheel_torque", "thrust"]
 ORDER = ("dipole", "wheel_torque", "thrust")
+
+
+def _plain(value: Any) -> bool:
+    """Whether a value is one that a law's parameters may hold."""
+    if isinstance(value, list | tuple):
+        return all(_plain(one) for one in value)
+    return isinstance(value, bool | str) or _numeric(value)
 
 
 def _numeric(value: Any) -> bool:
@@ -51,6 +58,15 @@ class Software(Record):
     def is_users(self) -> bool:
         """Whether the law is a function of the user's own."""
         return is_function_name(self.law)
+
+    @field_validator("parameters")
+    @classmethod
+    def _plain_parameters(cls, table: dict[str, Any]) -> dict[str, Any]:
+        """Finite numbers, truth values, text, and lists of them: what a law can take and a file can hold."""
+        for key, value in table.items():
+            if not _plain(value):
+                raise ValueError(f"must hold finite numbers, true, false, text, or lists of them; {key[:40]} is {came(value)}")
+        return table
 
     @model_validator(mode="after")
     def _declares_enough(self):
