@@ -65,7 +65,6 @@ def test_momentum_left_after_each_orbit():
     assert left == pytest.approx([1.0, 0.28806, 0.09102, 0.03002, 0.00997, 0.00327, 0.00104], abs=1e-5)
 
 
-@pytest.mark.kernels
 def test_the_part_along_the_field_is_left_and_goes_as_the_field_turns():
     run = dump()
     along = field(35.0, step_s=10.0, duration_s=600.0)
@@ -93,7 +92,6 @@ def test_dumping_against_an_adaptive_solver():
     assert run["momentum"].values[-1] == pytest.approx(solved.y[:, -1], abs=2e-6)
 
 
-@pytest.mark.kernels
 def test_saturated_coils_dump_slower_and_a_load_leaves_a_rest():
     free, weak = dump(orbits=1.0), dump(orbits=1.0, moment_limit_a_m2=5.0)
     assert float(weak["fraction"][-1]) > 1.5 * float(free["fraction"][-1])

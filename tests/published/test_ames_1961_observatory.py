@@ -7,7 +7,6 @@ from fieldline.cases.ames_1961 import observatory
 from fieldline.cases.ames_1961.observatory_day import field_along, stretches
 from fieldline.errors import InputError
 
-pytestmark = pytest.mark.kernels
 HOUR = {"duration_s": 7200.0}
 
 

@@ -48,6 +48,7 @@ def pointing(
     rate_arcsec_s=(0.0, 0.0),
     disturbance_n_m=(0.0, 0.0, 0.0),
     field_ratio_rate_per_s: float = 0.0,
+    field_roll_rate_deg_s: float = 0.0,
     measured_field_scale=(1.0, 1.0, 1.0),
     integral_per_s: float = 0.0,
     compensated: bool = True,
@@ -70,7 +71,7 @@ def pointing(
     error_arcsec, rate_arcsec_s : A_y, A_z and their rates at the start.
     sensor_limit_arcsec : of each error's signal.
     disturbance_n_m : constant torque, inertial axes that are the body's while the line is on its star.
-    field_ratio_rate_per_s : change of B_x/B; B and the direction of its transverse part stay.
+    field_ratio_rate_per_s : change of B_x/B at a constant B. field_roll_rate_deg_s : turning of the rest about the line.
     measured_field_scale : factors on the field that the law takes for true; (-1, 1, 1) is a wrong sign of B_x.
     small_angle : the analogue computer's kinematics, (4) of `flight`, instead of the rigid body's.
     integral_per_s, compensated : the integral's rate a, and whether the other gains follow it (2).
@@ -84,7 +85,9 @@ def pointing(
     _refuse(coils, transverse)
     settings = dict(locals())
     seconds = times(duration_s, sample_s)
-    field_i, field_step = _field_table(field_tesla, field_ratio, field_ratio_rate_per_s, transverse, duration_s)
+    field_i, field_step = _field_table(
+        field_tesla, field_ratio, field_ratio_rate_per_s, transverse, field_roll_rate_deg_s, duration_s
+    )
     vehicle = vehicle_of(
         inertia_kg_m2=inertia_kg_m2,
         coils=coils,
@@ -252,16 +255,19 @@ def _refuse(coils, transverse) -> None:
         raise InputError(f"transverse must be one of {', '.join(TRANSVERSE)}; got {transverse!r}.")
 
 
-def _field_table(field_tesla: float, ratio: float, ratio_rate: float, transverse: str, duration_s: float):
-    """(n, 3) [T] and its step [s]: B_x/B goes at its rate, the rest of B keeps its direction."""
+def _field_table(field_tesla: float, ratio: float, ratio_rate: float, transverse: str, roll_rate_deg_s: float, duration_s: float):
+    """(n, 3) [T] and its step [s]: B_x/B goes at its rate, the rest of B turns about x at its own."""
     number("field_tesla", field_tesla, 1e-9, 1e-3)
-    seconds = np.arange(0.0, duration_s + FIELD_STEP_S, FIELD_STEP_S) if ratio_rate else np.array([0.0, duration_s])
+    turned = np.radians(number("field_roll_rate_deg_s", roll_rate_deg_s, -10.0, 10.0))
+    changes = ratio_rate or turned
+    seconds = np.arange(0.0, duration_s + FIELD_STEP_S, FIELD_STEP_S) if changes else np.array([0.0, duration_s])
     along = number("field_ratio", ratio, -1.0, 1.0) + number("field_ratio_rate_per_s", ratio_rate, -1.0, 1.0) * seconds
     if np.abs(along).max() > 1.0:
         raise InputError(f"field_ratio goes to {along[-1]:g} in {duration_s:g} s; |B_x/B| is 1 at most. Take a smaller rate.")
     across = np.sqrt(1.0 - along * along)
     y, z = {"equal": (np.sqrt(0.5), np.sqrt(0.5)), "y-zero": (0.0, 1.0), "z-zero": (1.0, 0.0)}[transverse]
-    return field_tesla * np.stack([along, y * across, z * across], axis=1), float(seconds[1])
+    c, s = np.cos(turned * seconds), np.sin(turned * seconds)
+    return field_tesla * np.stack([along, (y * c - z * s) * across, (z * c + y * s) * across], axis=1), float(seconds[1])
 
 
 def _shown(pair) -> str:
