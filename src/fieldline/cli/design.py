@@ -1,4 +1,4 @@
-"""`fieldline design`: what steers by the field, sized from what it must do. `design coil` is here."""
+"""`fieldline design coil`, sized from what it must do, and `fieldline design wire`, the gauge table."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer
 from fieldline.cli import options
 from fieldline.errors import InputError
 
-design = typer.Typer(no_args_is_help=True, help="Design of coils, and of what else steers by the field.")
+design = typer.Typer(no_args_is_help=True, help="Size coils and rods that steer by the field.")
 
 MOST_FIELD_NT = 1e6
 ARGUMENTS = "moment_a_m2 torque_n_m diameter_m sides_m core_length_m core_diameter_m core_alloy core_shape current_a voltage_v "
@@ -74,6 +74,31 @@ def coil(
     written = _write(found, named, paths) if paths else []
     _show(found, written, as_json, quiet)
     return 0
+
+
+@design.command()
+def wire(
+    material: Annotated[str, typer.Option(help="copper, aluminium or silver.")] = "copper",
+    temperature_c: Annotated[float, typer.Option(help="Of the wire.")] = 20.0,
+    first: Annotated[int, typer.Option(help="Thickest gauge; 0, -1, -2, -3 are AWG0 to AWG4/0.", min=-3, max=50)] = 16,
+    last: Annotated[int, typer.Option(help="Finest gauge.", min=-3, max=50)] = 40,
+    as_json: options.Json = False,
+) -> None:
+    """The gauge table: diameter, section, resistance and mass of round wire by AWG number."""
+    from dataclasses import asdict
+
+    from fieldline.design import gauge_table
+
+    rows = gauge_table(material, temperature_c, first, last)
+    if as_json:
+        import json
+
+        print(json.dumps([asdict(row) for row in rows], indent=2))
+        return
+    print(f"{'gauge':<8}{'diameter [mm]':>14}{'section [mm²]':>15}{'[ohm/m]':>12}{'[g/m]':>11}")
+    for row in rows:
+        numbers = (1e3 * row.diameter_m, 1e6 * row.area_m2, row.resistance_ohm_per_m, 1e3 * row.mass_kg_per_m)
+        print(f"{row.name:<8}{numbers[0]:>14.4f}{numbers[1]:>15.5g}{numbers[2]:>12.4g}{numbers[3]:>11.4g}")
 
 
 def _converted(named: dict[str, Any]) -> dict[str, Any]:

@@ -127,6 +127,8 @@ def gauge_table(
     material: str | Conductor = "copper", temperature_c: float = 20.0, first: int = 0, last: int = 40
 ) -> list[GaugeRow]:
     """The rows of the gauges first to last, of a material at a temperature."""
+    if not COARSEST <= first <= last <= FINEST:
+        raise InputError(f"first and last must rise and lie between {COARSEST} (AWG4/0) and {FINEST}; got {first} and {last}.")
     metal = conductor(material)
     resistivity = metal.resistivity_at(temperature_c)
     rows = []

@@ -43,6 +43,15 @@ def test_the_page_stands_alone(tmp_path, monkeypatch, capsys):
         assert curve["mass_kg"].attrs["units"] == "kg"
 
 
+def test_the_gauge_table(capsys):
+    assert main("design wire --first 29 --last 30".split()) == 0
+    assert "AWG29" in (out := capsys.readouterr().out) and "0.2685" in out and out.count("\n") == 3
+    assert main("design wire --material aluminium --temperature-c 60 --first -3 --last -3 --json".split()) == 0
+    (row,) = json.loads(capsys.readouterr().out)
+    assert row["name"] == "AWG4/0" and row["diameter_m"] == pytest.approx(11.684e-3)
+    assert row["resistance_ohm_per_m"] * row["area_m2"] == pytest.approx(2.8264e-8 * (1.0 + 40.0 * 4.03e-3))
+
+
 def test_quiet_is_quiet(capsys):
     assert main([*OBSERVATORY, "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
@@ -62,6 +71,7 @@ def test_quiet_is_quiet(capsys):
         ("design coil --moment-a-m2 5 --diameter-m 1 --turns 9 --wire AWG29 --out no/such", "does not exist"),
         ("design coil --moment-a-m2 five", "--moment-a-m2"),
         ("design coils", "coil"),
+        ("design wire --first 9 --last 3", "first"),
         ("case ames-1961-feild", 'did you mean "ames_1961_field"'),
         ("case ames-1961-field --set inclination=3", 'did you mean "inclination_deg"'),
         ("case ames-1961-field --set inclination_deg=300", "inclination_deg"),
