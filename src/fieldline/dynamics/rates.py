@@ -17,9 +17,7 @@ from __future__ import annotations
 
 from math import sqrt, tan
 
-from numba import njit
-
-from fieldline.compiled import kernel
+from fieldline.compiled import counting, kernel
 from fieldline.dynamics.loads.hysteresis import MU0, induction_rate
 from fieldline.dynamics.loads.line import line_pull
 from fieldline.dynamics.loads.magnetic import commanded_dipole, dipole_torque, eddy_torque, row9
@@ -215,7 +213,7 @@ def impose(log, load, b, force_i, torque_b, out):
             log[load, b, 3 + j] += torque_b[j]
 
 
-@njit(cache=True)
+@counting
 def ask(loads, slot, t, state, parameters, reply):
     """A compiled function's answer into `reply`; how many numbers it gave. Counts references: the answer is a new array."""
     answer = loads[slot](t, state, parameters)

@@ -52,5 +52,6 @@ def read_gyro(omega_bi_b, dt, params, bias, k, rng, out):
         out.rate_b[axis] = digits(raw[axis], params.quantum[k], params.limit[k])
     out.valid[GYRO] = 1.0
     if params.serves[k] != 0.0:
-        out.omega_bi_b[:] = out.rate_b
+        for j in range(3):
+            out.omega_bi_b[j] = out.rate_b[j]
         out.valid[RATE] = 1.0

@@ -33,7 +33,7 @@ def __getattr__(name: str) -> Any:
 
 
 class _Package(ModuleType):
-    """This package, callable as the function that it is named for."""
+    """The package, callable as the function that it is named for."""
 
     def __call__(self, scenario, *, seed=None, progress=None):
         """`fieldline.simulate.run.simulate`."""

@@ -25,7 +25,7 @@ from fieldline.simulate.assembly.plant import plant_of
 from fieldline.simulate.assembly.software import place, software_of, tasks_of
 from fieldline.simulate.assembly.start import start_of
 from fieldline.simulate.loop.fly import fly
-from fieldline.simulate.loop.records import Outcome, Stepping
+from fieldline.simulate.loop.records import Outcome, Run, Stepping
 from fieldline.simulate.scenario.states import period_s, start_states
 
 FLOOR_M = 80e3  # height below which neither orbit nor air models mean anything
@@ -68,6 +68,10 @@ class Flight:
         self.clock = made.clock_of(scenario.integrator.step_s)
         self.work = new_work(self.plant, self.stepping.tableau.evaluations)
         self.loads = user.slots.filled()
+        self.run = Run(
+            self.y, np.empty_like(self.y), self.plant, self.inputs, self.schedule, self.stepping, self.sensors, self.boards,
+            self.tasks, self.actuators, self.events, self.record, self.clock, self.shared, self.work,
+        )  # fmt: skip
         self.outcome = Outcome.PAUSED
         self.interrupted = False
 
@@ -90,11 +94,7 @@ class Flight:
 
     def _fly_on(self, budget: int) -> int:
         """Some steps of the loop."""
-        return fly(
-            budget, self.y, np.empty_like(self.y), self.plant, self.inputs, self.schedule, self.stepping, self.sensors,
-            self.boards, self.tasks, self.actuators, self.events, self.record, self.clock, self.laws, self.memories,
-            self.parameters, self.loads, self.host.callback, self.shared, self.work, self.rng,
-        )  # fmt: skip
+        return fly(budget, self.run, self.laws, self.memories, self.parameters, self.loads, self.host.callback, self.rng)
 
     @property
     def complete(self) -> bool:

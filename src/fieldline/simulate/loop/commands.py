@@ -79,10 +79,11 @@ def next_command(tasks):
 
 
 @kernel
-def drive(t, k, value, period, plant, inputs, actuators):
+def drive(t, k, value, period, run):
     """Let actuator k do `value` from t on; a thruster for that part of `period`."""
+    inputs, actuators = run.inputs, run.actuators
     if k < actuators.torquers:
-        lag = plant.torquers.lag[k]
+        lag = run.plant.torquers.lag[k]
         now = inputs.dipole_to[k]
         if lag > 0.0:
             now += (inputs.dipole_from[k] - now) * exp(-(t - inputs.dipole_since[k]) / lag)
@@ -121,8 +122,9 @@ def next_ceasing(actuators):
 
 
 @kernel
-def obey(t, plant, inputs, tasks, actuators):
+def obey(t, run):
     """Let every command that is due take effect."""
+    tasks, actuators = run.tasks, run.actuators
     for i in range(tasks.pending.shape[0]):
         for j in range(tasks.pending.shape[1]):
             if tasks.pending[i, j] > t + SAME_TIME_S:
@@ -134,13 +136,14 @@ def obey(t, plant, inputs, tasks, actuators):
                     continue
                 actuators.wanted[k] = value
                 if not (k < actuators.torquers and actuators.off[actuators.body[k]] != 0):
-                    drive(t, k, value, tasks.period[i], plant, inputs, actuators)
+                    drive(t, k, value, tasks.period[i], run)
 
 
 @kernel
-def switch_torquers(t, body, off, plant, inputs, actuators):
+def switch_torquers(t, body, off, run):
     """Duty cycle: let the torquers of a body rest, or do what was wanted last."""
+    actuators = run.actuators
     actuators.off[body] = 1 if off else 0
     for k in range(actuators.torquers):
         if actuators.body[k] == body:
-            drive(t, k, 0.0 if off else actuators.wanted[k], 0.0, plant, inputs, actuators)
+            drive(t, k, 0.0 if off else actuators.wanted[k], 0.0, run)

@@ -6,9 +6,7 @@ leaves its answer in `shared.reply`. Both see the same rows of `Boards`, as a `M
 
 from __future__ import annotations
 
-from numba import njit
-
-from fieldline.compiled import kernel
+from fieldline.compiled import counting, kernel
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import three
 from fieldline.environment.ephemeris import dcm_ei_kernel
@@ -44,8 +42,9 @@ def measurement_of(boards, b):
 
 
 @kernel
-def refresh(t, b, y, plant, sensors, boards):
+def refresh(t, b, run):
     """What is known at any time: the orbit where no receiver reads it, the wheels' speeds, the reference field."""
+    y, plant, sensors, boards = run.y, run.plant, run.sensors, run.boards
     if sensors.suite.navigations.present[b] == 0.0:
         for j in range(3):
             boards.position_i[b, j] = y[STATE * b + j]
@@ -86,7 +85,7 @@ def all_finite(values, count):
     return True
 
 
-@njit(cache=True)
+@counting
 def ask(laws, slot, t, measurement, memory, params, reply):
     """A compiled law's answer into `reply`; how many numbers it gave. Counts references: the answer is a new array."""
     answer = laws[slot](t, measurement, memory, params)
@@ -96,10 +95,11 @@ def ask(laws, slot, t, measurement, memory, params, reply):
 
 
 @kernel
-def run_task(t, i, y, plant, sensors, boards, tasks, actuators, laws, memories, parameters, call, shared):
+def run_task(t, i, run, laws, memories, parameters, call):
     """Run task i; 0 or the outcome that ends the run, with the culprit noted."""
+    boards, tasks, shared = run.boards, run.tasks, run.shared
     b = tasks.body[i]
-    refresh(t, b, y, plant, sensors, boards)
+    refresh(t, b, run)
     shared.culprit[0] = i
     tasks.runs[i] += 1
     slot = tasks.slot[i]
@@ -123,6 +123,6 @@ def run_task(t, i, y, plant, sensors, boards, tasks, actuators, laws, memories, 
     commands = shared.commands
     for k in range(commands.shape[0]):
         commands[k] = NEVER
-    allocate(reply, count, i, tasks, actuators, commands)
+    allocate(reply, count, i, tasks, run.actuators, commands)
     send(t, i, tasks, commands)
     return 0

@@ -44,8 +44,9 @@ def load_outcome(status):
 
 
 @kernel
-def next_time(schedule, tasks, actuators, stepping):
+def next_time(run):
     """When anything is due next that the plant must be stepped to [s]; outputs bind fixed steps only."""
+    schedule, stepping, tasks, actuators = run.schedule, run.stepping, run.tasks, run.actuators
     soonest = min(stepping.end, min(next_command(tasks), next_ceasing(actuators)))
     for j in range(schedule.kind.shape[0]):
         if not (stepping.adaptive and schedule.kind[j] == OUTPUT):
@@ -54,8 +55,9 @@ def next_time(schedule, tasks, actuators, stepping):
 
 
 @kernel
-def write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, work):
+def write_row(t, y, run, loads, call):
     """Keep the state and what goes with it."""
+    plant, inputs, boards, record, clock = run.plant, run.inputs, run.boards, run.record, run.clock
     row = clock.rows[0]
     if row >= record.seconds.shape[0]:
         return
@@ -84,58 +86,39 @@ def write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, w
     if record.loads.shape[0] > 0:
         lift(y, record.start, record.z)
         log = record.loads[row]
-        plant_rates(t, record.z, record.start, plant, inputs, work.frozen, False, loads, call, shared, log, record.rate)
+        plant_rates(t, record.z, record.start, plant, inputs, run.work.frozen, False, loads, call, run.shared, log, record.rate)
 
 
 @kernel
-def do_due(
-    t,
-    y,
-    plant,
-    inputs,
-    schedule,
-    sensors,
-    boards,
-    tasks,
-    actuators,
-    stepping,
-    record,
-    clock,
-    laws,
-    memories,
-    parameters,
-    loads,
-    call,
-    shared,
-    work,
-    rng,
-):
+def do_due(t, run, laws, memories, parameters, loads, call, rng):
     """Everything that is due at t; 0 or the outcome that ends the run."""
+    schedule = run.schedule
     for j in range(schedule.kind.shape[0]):
         if schedule.phase[j] + schedule.count[j] * schedule.period[j] > t + SAME_TIME_S:
             continue
         schedule.count[j] += 1
         kind, who = schedule.kind[j], schedule.who[j]
         if kind == TASK:
-            outcome = run_task(t, who, y, plant, sensors, boards, tasks, actuators, laws, memories, parameters, call, shared)
+            outcome = run_task(t, who, run, laws, memories, parameters, call)
             if outcome != 0:
                 return outcome
         elif kind == OUTPUT:
-            if not stepping.adaptive or t == 0.0:
-                obey(t, plant, inputs, tasks, actuators)
-                write_row(t, y, plant, inputs, boards, record, clock, loads, call, shared, work)
+            if not run.stepping.adaptive or t == 0.0:
+                obey(t, run)
+                write_row(t, run.y, run, loads, call)
         elif kind == TORQUE_OFF or kind == TORQUE_ON:
-            switch_torquers(t, who, kind == TORQUE_OFF, plant, inputs, actuators)
+            switch_torquers(t, who, kind == TORQUE_OFF, run)
         else:
-            sample(t, j, kind, who, y, plant, inputs, sensors, boards, schedule, record, clock, rng)
-    cease_fire(t, inputs, actuators)
-    obey(t, plant, inputs, tasks, actuators)
+            sample(t, j, kind, who, run, rng)
+    cease_fire(t, run.inputs, run.actuators)
+    obey(t, run)
     return 0
 
 
 @kernel
-def fixed_length(t, y, due, plant, stepping):
+def fixed_length(t, due, run):
     """Length of the next fixed step [s], negative where it is too long for a body's rate."""
+    y, plant, stepping = run.y, run.plant, run.stepping
     gap = due - t
     h = gap / max(1.0, ceil(gap / stepping.step - 1e-6))
     for b in range(plant.bodies.mass.shape[0]):
@@ -157,37 +140,36 @@ def sound(t, y, plant, stepping):
 
 
 @kernel
-def interpolated_rows(
-    t, h, last, scratch, ready, plant, inputs, schedule, stepping, boards, record, clock, loads, call, shared, work
-):
-    """Write the outputs of an adaptive step that fall in (t, last]; whether the interpolant is made."""
+def interpolated_rows(t, h, last, ready, run, loads, call):
+    """Write the outputs of an adaptive step that fall in (t, last]."""
+    schedule = run.schedule
     for j in range(schedule.kind.shape[0]):
         if schedule.kind[j] != OUTPUT:
             continue
         due = schedule.phase[j] + schedule.count[j] * schedule.period[j]
         while due <= last + SAME_TIME_S:
             if not ready:
-                interpolant(t, h, plant, inputs, stepping, loads, call, shared, work)
+                interpolant(t, h, run, loads, call)
                 ready = True
-            within(min((due - t) / h, 1.0), work, scratch)
-            write_row(due, scratch, plant, inputs, boards, record, clock, loads, call, shared, work)
+            within(min((due - t) / h, 1.0), run.work, run.scratch)
+            write_row(due, run.scratch, run, loads, call)
             schedule.count[j] += 1
             due = schedule.phase[j] + schedule.count[j] * schedule.period[j]
-    return ready
 
 
 @kernel
-def advance(t, due, y, scratch, plant, inputs, schedule, stepping, boards, events, record, clock, loads, call, shared, work):
+def advance(t, due, run, loads, call):
     """One step of the plant towards `due`; (outcome, time reached)."""
+    plant, stepping, clock, shared, work = run.plant, run.stepping, run.clock, run.shared, run.work
     if stepping.adaptive:
         h = min(clock.h[0], due - t)
     else:
-        h = fixed_length(t, y, due, plant, stepping)
+        h = fixed_length(t, due, run)
         if h < 0.0:
             return COARSE, t
     refused = False
     while True:
-        status = attempt(t, h, y, plant, inputs, stepping.hold, stepping.tableau, loads, call, shared, work)
+        status = attempt(t, h, run.y, plant, run.inputs, stepping.hold, stepping.tableau, loads, call, shared, work)
         if status != 0:
             return load_outcome(status), t
         if not stepping.adaptive:
@@ -208,71 +190,41 @@ def advance(t, due, y, scratch, plant, inputs, schedule, stepping, boards, event
             return UNDERFLOW, t
     clock.steps[0] += 1
     reached = due if due - (t + h) < SAME_TIME_S else t + h
-    settle(work.z1, work.start, y)
-    outcome = sound(reached, y, plant, stepping)
+    settle(work.z1, work.start, run.y)
+    outcome = sound(reached, run.y, plant, stepping)
     if outcome == BROKEN:
         return outcome, reached
     ready = False
     part = 1.0
-    if events.kind.shape[0] > 0:
-        part = watch(t, h, y, scratch, ready, plant, inputs, stepping, events, clock, loads, call, shared, work)
+    if run.events.kind.shape[0] > 0:
+        part = watch(t, h, ready, run, loads, call)
     if part < 1.0:
-        interpolant(t, h, plant, inputs, stepping, loads, call, shared, work)
+        interpolant(t, h, run, loads, call)
         ready = True
         reached = t + part * h
         outcome = STOPPED
     if stepping.adaptive:
-        interpolated_rows(
-            t, h, reached, scratch, ready, plant, inputs, schedule, stepping, boards, record, clock, loads, call, shared, work
-        )
+        interpolated_rows(t, h, reached, ready, run, loads, call)
     if part < 1.0:
-        within(part, work, y)
+        within(part, work, run.y)
     return outcome, reached
 
 
 @kernel
-def fly(
-    budget,
-    y,
-    scratch,
-    plant,
-    inputs,
-    schedule,
-    stepping,
-    sensors,
-    boards,
-    tasks,
-    actuators,
-    events,
-    record,
-    clock,
-    laws,
-    memories,
-    parameters,
-    loads,
-    call,
-    shared,
-    work,
-    rng,
-):
+def fly(budget, run, laws, memories, parameters, loads, call, rng):
     """Fly on from clock.t for at most `budget` steps; the outcome, as a number."""
+    clock, stepping, events = run.clock, run.stepping, run.events
     t = clock.t[0]
     if clock.steps[0] == 0 and clock.rows[0] == 0:
         for k in range(events.kind.shape[0]):
-            events.value[k] = quantity(t, k, y, plant, events, loads, call, shared)
+            events.value[k] = quantity(t, k, run.y, run, loads, call)
     for _ in range(budget):
-        outcome = do_due(
-            t, y, plant, inputs, schedule, sensors, boards, tasks, actuators, stepping, record, clock, laws, memories, parameters,
-            loads, call, shared, work, rng,
-        )  # fmt: skip
+        outcome = do_due(t, run, laws, memories, parameters, loads, call, rng)
         if outcome != 0:
             return outcome
         if t >= stepping.end - SAME_TIME_S:
             return DONE
-        due = next_time(schedule, tasks, actuators, stepping)
-        outcome, t = advance(
-            t, due, y, scratch, plant, inputs, schedule, stepping, boards, events, record, clock, loads, call, shared, work
-        )
+        outcome, t = advance(t, next_time(run), run, loads, call)
         clock.t[0] = t
         if outcome != 0:
             return outcome

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fieldline.dynamics.parameters import Inputs, Plant
+from fieldline.dynamics.step import Shared, Work
 from fieldline.environment.field_record import FieldParams
 from fieldline.integrate.tableau import Tableau
 from fieldline.sensing.suite import Suite
@@ -162,3 +164,23 @@ class Clock(NamedTuple):
     samples: np.ndarray  # (1,) int64
     events: np.ndarray  # (1,) int64
     steps: np.ndarray  # (2,) int64: taken, refused
+
+
+class Run(NamedTuple):
+    """All of it: what a run is made of, what it remembers and what it writes."""
+
+    y: np.ndarray  # (n,) state
+    scratch: np.ndarray  # (n,) another, for looking into a step
+    plant: Plant
+    inputs: Inputs
+    schedule: Schedule
+    stepping: Stepping
+    sensors: Sensors
+    boards: Boards
+    tasks: Tasks
+    actuators: Actuators
+    events: Events
+    record: Record
+    clock: Clock
+    shared: Shared
+    work: Work

@@ -32,8 +32,9 @@ def keep(t, row, values, record, clock):
 
 
 @kernel
-def sample(t, row, kind, b, y, plant, inputs, sensors, boards, schedule, record, clock, rng):
+def sample(t, row, kind, b, run, rng):
     """Read one sensor of body b."""
+    y, plant, sensors, boards, record, clock = run.y, run.plant, run.sensors, run.boards, run.record, run.clock
     board = measurement_of(boards, b)
     suite = sensors.suite
     r, v, omega = three(y, STATE * b), three(y, STATE * b + 3), three(y, STATE * b + 10)
@@ -41,14 +42,14 @@ def sample(t, row, kind, b, y, plant, inputs, sensors, boards, schedule, record,
     if kind == MAGNETOMETER:
         dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
         field_b = to_body(q, field_at(r, dcm_ei, plant.surroundings))
-        dipole = commanded_dipole(t, b, plant.torquers, inputs)
+        dipole = commanded_dipole(t, b, plant.torquers, run.inputs)
         for j in range(3):
             board.dipole_b[j] = dipole[j]
         read_magnetometer(t, field_b, dipole, suite.magnetometers, b, rng, board)
         keep(t, row, board.field_b, record, clock)
     elif kind == GYRO:
-        first = schedule.count[row] <= 1
-        read_gyro(omega, 0.0 if first else schedule.period[row], suite.gyros, sensors.gyro_bias, b, rng, board)
+        first = run.schedule.count[row] <= 1
+        read_gyro(omega, 0.0 if first else run.schedule.period[row], suite.gyros, sensors.gyro_bias, b, rng, board)
         keep(t, row, board.rate_b, record, clock)
     elif kind == NAVIGATION:
         read_navigation(r, v, suite.navigations, b, rng, board)

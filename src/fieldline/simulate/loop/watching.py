@@ -33,8 +33,9 @@ def height_of(t, b, y, plant):
 
 
 @kernel
-def quantity(t, k, y, plant, events, loads, call, shared):
+def quantity(t, k, y, run, loads, call):
     """What event k watches, at state y; NaN where the user's function failed."""
+    plant, events, shared = run.plant, run.events, run.shared
     b = events.body[k]
     if events.kind[k] == ECLIPSE:
         return sunlit_kernel(three(y, STATE * b), sun_kernel(t, plant.surroundings.ephemeris)) - 0.5
@@ -53,8 +54,9 @@ def quantity(t, k, y, plant, events, loads, call, shared):
 
 
 @kernel
-def interpolant(t, h, plant, inputs, stepping, loads, call, shared, work):
+def interpolant(t, h, run, loads, call):
     """Coefficients of the state within the step just taken, into work.dense."""
+    plant, inputs, stepping, shared, work = run.plant, run.inputs, run.stepping, run.shared, run.work
     stages = stepping.tableau.b.shape[0]
     hold = stepping.hold
     closing_rates(t, h, plant, inputs, hold, loads, call, shared, work, stages)
@@ -78,34 +80,35 @@ def within(theta, work, y):
 
 
 @kernel
-def crossing(t, h, k, before, after, y, plant, events, loads, call, shared, work):
-    """Fraction of the step at which event k happens; y is scratch."""
+def crossing(t, h, k, before, after, run, loads, call):
+    """Fraction of the step at which event k happens."""
     a, fa, b, fb = 0.0, before, 1.0, after
     left = evaluations(b - a, SHARPNESS)
     while b - a > SHARPNESS and left > 0:
         x = next_guess(a, fa, b, fb, left, SHARPNESS)
-        within(x, work, y)
-        a, fa, b, fb = narrow(a, fa, b, fb, x, quantity(t + x * h, k, y, plant, events, loads, call, shared))
+        within(x, run.work, run.scratch)
+        a, fa, b, fb = narrow(a, fa, b, fb, x, quantity(t + x * h, k, run.scratch, run, loads, call))
         left -= 1
     return b
 
 
 @kernel
-def watch(t, h, y, scratch, ready, plant, inputs, stepping, events, clock, loads, call, shared, work):
-    """Look for crossings in the step from t to t + h that ended in y; keep them.
+def watch(t, h, ready, run, loads, call):
+    """Look for crossings in the step from t to t + h, whose end is the state now; keep them.
 
     Returns the fraction of the step at which the run stops, 1 where it goes on. `ready`: the interpolant is made.
     """
+    events, clock = run.events, run.clock
     stop = 1.0
     for k in range(events.kind.shape[0]):
-        before, after = events.value[k], quantity(t + h, k, y, plant, events, loads, call, shared)
+        before, after = events.value[k], quantity(t + h, k, run.y, run, loads, call)
         events.value[k] = after
         if not bracketed(before, after, events.direction[k]):
             continue
         if not ready:
-            interpolant(t, h, plant, inputs, stepping, loads, call, shared, work)
+            interpolant(t, h, run, loads, call)
             ready = True
-        theta = crossing(t, h, k, before, after, scratch, plant, events, loads, call, shared, work)
+        theta = crossing(t, h, k, before, after, run, loads, call)
         place = clock.events[0]
         if place < events.found.shape[0]:
             events.found[place, 0] = k
