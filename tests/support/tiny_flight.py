@@ -182,9 +182,13 @@ class TinyFlight:
         orbital = Rotation.from_matrix(self.orbital_dcm(*place(t, self.radius, self.inclination)).T)
         return (orbital * Rotation.from_rotvec(turned_rad)).as_quat()
 
-    def nadir_error_deg(self, flown) -> np.ndarray:
-        """(n,) [deg] angle between body and orbital axes."""
+    def nadir_rotation(self, flown):
+        """SciPy rotations from the body to the orbital axes at every row."""
         from scipy.spatial.transform import Rotation
 
         orbital = np.array([self.orbital_dcm(*place(t, self.radius, self.inclination)).T for t in flown["t"]])
-        return np.degrees((Rotation.from_matrix(orbital).inv() * Rotation.from_quat(flown["q"])).magnitude())
+        return Rotation.from_matrix(orbital).inv() * Rotation.from_quat(flown["q"])
+
+    def nadir_error_deg(self, flown) -> np.ndarray:
+        """(n,) [deg] angle between body and orbital axes."""
+        return np.degrees(self.nadir_rotation(flown).magnitude())

@@ -45,13 +45,13 @@ def _times(params, first, v):
 def magnetic_pd(t, measurement, memory, params):
     """Moment (35), and what cancels residual dipole and torque if they are estimated.
 
-    Zero where field, attitude or rate is not known.
+    Where field, attitude or rate is not known, only the residual dipole as last estimated is cancelled.
     """
     momentum_b = wheel_momentum_b(measurement, params, WHEELS)
     dipole, own_torque = residual_estimate(t, measurement, momentum_b, memory, 0, params, FILTER)
     known, theta, rate, _ = pointing_error(measurement, params, 0)
     if not (known and field_known(measurement)):
-        return np.zeros(3)
+        return as_command(shortened(scale(-1.0, dipole), params, MOMENT_MAX)[0])
     pull, damp = _times(params, STIFFNESS, theta), _times(params, RATE_GAIN, rate)
     torque = (-pull[0] - damp[0], -pull[1] - damp[1], -pull[2] - damp[2])
     field = lifted(measurement.field_b)

@@ -14,15 +14,16 @@ The integral of theta takes out what a constant torque in the orbital axes leave
 or the error beyond `integral_limit_deg`. Better is to estimate (`cancel_residual`): a residual dipole is then commanded away,
 and a constant torque met by the gains (40) of `regulator_design`.
 
-Kernel: params hold the table of 3 x 12 gains at N phases; the phase is the orbit's, counted from the run's start as the
-design's field was. Sources: Wisniewski (1997), Proc. IEEE CDC, 1788; Psiaki (2001), J. Guidance 24(2):386.
+Kernel: params hold the table of 3 x 12 gains at N phases of one orbit, or of a day's orbits, because the Earth turns its
+tilted field under the orbit; the phase is counted from the run's start as the design's field was.
+
+Sources: Wisniewski (1997), Proc. IEEE Conf. Decision and Control, 1788; Psiaki (2001), J. Guidance 24(2):386.
 """
 
 from __future__ import annotations
 
 from math import floor, pi
 
-import numpy as np
 from numba import njit
 
 from fieldline.control import residual_dipole, target
@@ -34,8 +35,9 @@ from fieldline.control.target import pointing_error
 from fieldline.frames.vectors import add, cross, dot, norm, scale, sub
 
 MEAN_MOTION = target.SIZE
-NODES, BY_PROJECTION, INTEGRATES, INTEGRAL_LIMIT = MEAN_MOTION + 1, MEAN_MOTION + 2, MEAN_MOTION + 3, MEAN_MOTION + 4
-MOMENT_MAX = MEAN_MOTION + 5
+NODES, ORBITS, BY_PROJECTION = MEAN_MOTION + 1, MEAN_MOTION + 2, MEAN_MOTION + 3
+INTEGRATES, INTEGRAL_LIMIT = MEAN_MOTION + 4, MEAN_MOTION + 5
+MOMENT_MAX = MEAN_MOTION + 6
 FILTER = MOMENT_MAX + 3
 TABLE_AT = FILTER + residual_dipole.SIZE
 WHEELS = TABLE_AT + 1
@@ -48,7 +50,7 @@ MEMORY = OWN + residual_dipole.MEMORY
 
 @njit(cache=True)
 def orbit_phase(t, measurement, memory, params):
-    """Phase [rad] of the orbit since the run's start: along the known orbit, or by the mean motion alone without one."""
+    """Angle [rad] along the orbit since the run's start: by the mean motion, corrected by where the satellite is, if known."""
     by_clock = params[MEAN_MOTION] * t
     if not orbit_known(measurement):
         return by_clock
@@ -56,14 +58,15 @@ def orbit_phase(t, measurement, memory, params):
     if memory[HAS_PHASE] < 0.5:
         memory[HAS_PHASE] = 1.0
         memory[PHASE_SHIFT] = by_clock - here
-    return here + memory[PHASE_SHIFT]
+    ahead = here + memory[PHASE_SHIFT] - by_clock
+    return by_clock + ahead - 2.0 * pi * floor(ahead / (2.0 * pi) + 0.5)
 
 
 @njit(cache=True)
 def _interpolated(params, phase, theta, rate, whole, torque):
     """The table's matrix at a phase times the state, linear between the nodes."""
     nodes = int(params[NODES])
-    turns = phase / (2.0 * pi)
+    turns = phase / (2.0 * pi * params[ORBITS])
     at = (turns - floor(turns)) * nodes
     lower = int(at) % nodes
     share = at - int(at)
@@ -111,13 +114,16 @@ def _integral(t, theta, memory, params):
 
 @njit(cache=True)
 def magnetic_regulator(t, measurement, memory, params):
-    """Moment of (36), (37) or (38), as the params hold it, and what cancels residual dipole and torque if they are estimated."""
+    """Moment of (36), (37) or (38), as the params hold it, less the residual dipole if it is estimated.
+
+    Where field, attitude or rate is not known, only the residual dipole as last estimated is cancelled.
+    """
     momentum_b = wheel_momentum_b(measurement, params, WHEELS)
     dipole, torque = residual_estimate(t, measurement, momentum_b, memory, OWN, params, FILTER)
     known, theta, rate, _ = pointing_error(measurement, params, 0)
     if not (known and field_known(measurement)):
         memory[HAS_TIME] = 0.0
-        return np.zeros(3)
+        return as_command(shortened(scale(-1.0, dipole), params, MOMENT_MAX)[0])
     whole = _integral(t, theta, memory, params)
     push = _interpolated(params, orbit_phase(t, measurement, memory, params), theta, rate, whole, torque)
     field = lifted(measurement.field_b)

@@ -9,6 +9,7 @@ from math import isfinite
 
 from numba import njit
 
+from fieldline.frames.vectors import cross, dot
 from fieldline.sensing.measurement import ATTITUDE, FIELD, GYRO, ORBIT, RATE
 
 
@@ -40,9 +41,10 @@ def gyro_known(measurement):
 
 @njit(cache=True)
 def attitude_known(measurement):
-    """Whether the attitude q_bi is known on board."""
+    """Whether the attitude q_bi is known on board: valid, and a quaternion within a tenth of unit length."""
     q = measurement.q_bi
-    return measurement.valid[ATTITUDE] > 0.5 and finite3(lifted(q)) and isfinite(q[3])
+    square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
+    return measurement.valid[ATTITUDE] > 0.5 and 0.81 < square < 1.21
 
 
 @njit(cache=True)
@@ -53,8 +55,11 @@ def rate_known(measurement):
 
 @njit(cache=True)
 def orbit_known(measurement):
-    """Whether position and velocity are known on board."""
-    return measurement.valid[ORBIT] > 0.5 and finite3(lifted(measurement.position_i)) and finite3(lifted(measurement.velocity_i))
+    """Whether position and velocity are known on board: valid, finite, and not along one line."""
+    r, v = lifted(measurement.position_i), lifted(measurement.velocity_i)
+    h = cross(r, v)
+    moves = dot(h, h) > 1e-12 * dot(r, r) * dot(v, v)
+    return measurement.valid[ORBIT] > 0.5 and finite3(r) and finite3(v) and moves
 
 
 @njit(cache=True)

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fieldline.constants import EARTH_ROTATION_RATE_RAD_S
 from fieldline.control import magnetic_regulator, residual_dipole, target
 from fieldline.control.law import Law, Parameter, complete
 from fieldline.control.linear_attitude import attitude_matrix, cross_matrix, moment_matrix, with_integral
@@ -25,19 +26,18 @@ from fieldline.control.target import packed_target
 from fieldline.errors import InputError
 from fieldline.frames.attitude import dcm_from_quaternion
 
-NODES = 90  # 4 degrees of the orbit
+NODES = 90  # of an orbit: 4 degrees
 CONSTANT_STEP_S = 60.0  # of a design with constant coefficients: any step gives the same
 
 PARAMETERS = {
     **target.PARAMETERS,
     "angle_deg": Parameter("deg", "pointing error that weighs as much as each of the others", 2.0, "positive"),
-    "rate_deg_s": Parameter(
-        "deg/s", "rate error that does; derived as the angle times the mean motion", kind="positive", derived=True
-    ),
+    "rate_deg_s": Parameter("deg/s", "rate error that does; derived as 3 n angle", kind="positive", derived=True),
     "moment_a_m2": Parameter(
         "A m^2", "moment that does; derived as a tenth of the torquers' least", kind="positive", derived=True
     ),
     "integral_time_s": Parameter("s", "T of the integral of the error; 0 is none", 0.0, "not negative"),
+    "orbits": Parameter("", "after how many orbits the gains repeat; derived as a day's, or 1", kind="positive", derived=True),
     "integral_limit_deg": Parameter("deg", "no integration beyond this error", 5.0, "positive"),
     "momentum_n_m_s": Parameter(
         "N m s", "constant momentum of a wheel that the design counts on, body axes", (0.0, 0.0, 0.0), "vector"
@@ -47,18 +47,28 @@ PARAMETERS = {
 }
 
 
-def fold(seconds, field, mean_motion_rad_s: float, nodes: int = NODES) -> np.ndarray:
-    """(nodes, 3) [T]: the mean over whole orbits of a field (n, 3) along an orbit, at equal steps of phase from t = 0.
+def fold(seconds, field, mean_motion_rad_s: float, orbits: int = 1, nodes: int = NODES) -> np.ndarray:
+    """(orbits * nodes, 3) [T]: a field (n, 3) along an orbit at equal steps of phase from t = 0, repeating after `orbits`.
 
-    Errors: `InputError` for less than one orbit.
+    What is longer is averaged over its whole repetitions. Errors: `InputError` for less than one.
     """
     turns = np.asarray(seconds, dtype=float) * mean_motion_rad_s / (2.0 * np.pi)
-    first, whole = np.ceil(turns[0] - 1e-9), int(np.floor(turns[-1] - np.ceil(turns[0] - 1e-9) + 1e-2))
+    first = np.ceil(turns[0] - 1e-9)
+    whole = int(np.floor((turns[-1] - first) / orbits + 1e-2))
     if whole < 1:
-        raise InputError(f"a regulator's field must cover one orbit or more; it covers {turns[-1] - turns[0]:.2f}.")
-    at = (first + np.arange(whole)[:, None] + np.arange(nodes) / nodes).ravel()
+        raise InputError(
+            f"a regulator that repeats after {orbits} orbits needs their field; it covers {turns[-1] - turns[0]:.2f}."
+        )
+    at = (first + np.arange(whole * orbits * nodes) / nodes).ravel()
     along = np.stack([np.interp(at, turns, np.asarray(field)[:, j]) for j in range(3)], axis=-1)
-    return along.reshape(whole, nodes, 3).mean(axis=0)
+    return np.roll(along.reshape(whole, orbits * nodes, 3).mean(axis=0), int(first) % orbits * nodes, axis=0)
+
+
+def repeating_orbits(seconds, mean_motion_rad_s: float) -> int:
+    """The whole number of orbits nearest to a turn of the Earth if the seconds (n,) cover it, else 1."""
+    wanted = round(mean_motion_rad_s / EARTH_ROTATION_RATE_RAD_S)
+    covered = (seconds[-1] - max(0.0, seconds[0])) * mean_motion_rad_s / (2.0 * np.pi)
+    return wanted if covered + 1e-2 >= wanted else 1
 
 
 def _goal(values: dict, context):
@@ -75,11 +85,11 @@ def _goal(values: dict, context):
 def _weights(values: dict, field, context) -> tuple[np.ndarray, float]:
     """Diagonal of Q and the moment m of (39)."""
     angle = np.radians(values["angle_deg"])
-    rate = angle * context.mean_motion_rad_s if values["rate_deg_s"] is None else np.radians(values["rate_deg_s"])
+    rate = 3.0 * angle * context.mean_motion_rad_s if values["rate_deg_s"] is None else np.radians(values["rate_deg_s"])
     moment = values["moment_a_m2"]
     if moment is None:
         stiffness = float(np.linalg.eigvalsh(context.inertia_kg_m2)[-1]) * context.mean_motion_rad_s**2
-        moment = stiffness * angle / float(np.sqrt(np.mean(np.sum(field**2, axis=1))))
+        moment = 3.0 * stiffness * angle / float(np.sqrt(np.mean(np.sum(field**2, axis=1))))
     q = [angle**-2.0] * 3 + [rate**-2.0] * 3
     if values["integral_time_s"] > 0.0:
         q += [(angle * values["integral_time_s"]) ** -2.0] * 3
@@ -108,16 +118,16 @@ def _model(a, b, integrates: bool):
     return with_integral(a, b) if integrates else (a, b)
 
 
-def _periodic(law, a, seconds, field, q, moment, context) -> np.ndarray:
+def _periodic(law, a, seconds, field, q, moment, orbits, context) -> np.ndarray:
     """(36): gains (N, 3, n + 3)."""
-    b = moment_matrix(context.inertia_kg_m2, fold(seconds, field, context.mean_motion_rad_s))
+    b = moment_matrix(context.inertia_kg_m2, fold(seconds, field, context.mean_motion_rad_s, orbits))
     a, b = _model(a, b, len(q) == 9)
     g = reach(b, np.eye(3) / moment**2)
-    rows = _solved(law, a, g, q, context.inertia_kg_m2, 2.0 * np.pi / context.mean_motion_rad_s)
+    rows = _solved(law, a, g, q, context.inertia_kg_m2, 2.0 * np.pi * orbits / context.mean_motion_rad_s)
     return moment**2 * np.linalg.solve(context.inertia_kg_m2, rows)
 
 
-def _asymptotic(law, a, seconds, field, q, moment, context) -> np.ndarray:
+def _asymptotic(law, a, seconds, field, q, moment, orbits, context) -> np.ndarray:
     """(37): gains (1, 3, n + 3)."""
     a, b = _model(a, moment_matrix(context.inertia_kg_m2, field), len(q) == 9)
     g = reach(b, np.eye(3) / moment**2).mean(axis=0, keepdims=True)
@@ -125,7 +135,7 @@ def _asymptotic(law, a, seconds, field, q, moment, context) -> np.ndarray:
     return moment**2 * np.linalg.solve(context.inertia_kg_m2, rows)
 
 
-def _averaged(law, a, seconds, field, q, moment, context) -> np.ndarray:
+def _averaged(law, a, seconds, field, q, moment, orbits, context) -> np.ndarray:
     """(38): gains (1, 3, n + 3)."""
     square = np.sum(field**2, axis=1)
     across = (-(cross_matrix(field) @ cross_matrix(field)) / square[:, None, None]).mean(axis=0)  # of I - B B'/B^2
@@ -142,12 +152,13 @@ def _pack(law: str, design, table, context) -> np.ndarray:
     values = complete(law, PARAMETERS, table)
     a, seconds, field = _goal(values, context)
     q, moment = _weights(values, field, context)
-    gains = design(law, a, seconds, field, np.diag(q), moment, context)
+    orbits = repeating_orbits(seconds, context.mean_motion_rad_s) if values["orbits"] is None else max(1, round(values["orbits"]))
+    gains = design(law, a, seconds, field, np.diag(q), moment, orbits, context)
     rows = np.zeros((gains.shape[0], 3, 12))
     rows[:, :, : len(q)], rows[:, :, 9:] = gains[:, :, :-3], gains[:, :, -3:]
     most = context.moment_max_a_m2 if values["moment_max_a_m2"] is None else values["moment_max_a_m2"]
     integral = (float(values["integral_time_s"] > 0.0), np.radians(values["integral_limit_deg"]))
-    head = (context.mean_motion_rad_s, float(rows.shape[0]), float(design is _averaged), *integral, *most)
+    head = (context.mean_motion_rad_s, float(rows.shape[0]), float(orbits), float(design is _averaged), *integral, *most)
     filter_numbers = packed_filter(values, context, values["cancel_residual"])
     wheels = packed_wheels(context)
     table_at = magnetic_regulator.WHEELS + wheels.size

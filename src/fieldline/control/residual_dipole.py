@@ -13,8 +13,11 @@ axes, a quarter of an orbit later for a body that points: the covariance knows.
 Cancelling is to command -m, and against c the moment -B x c / B^2, which gives -c less its part along B: `cancel_residual`
 of the pointing laws, or the law `residual-dipole` by itself, which cancels m alone.
 
-Memory: a flag, the time, the nine states, their covariance, then the field and H of the last call. Kernels take the place
-`m0` of the filter in a law's memory and `p0` of its numbers in the law's params.
+The step is of second order: good while the body turns, and nutates, by less than a tenth of a radian between two calls.
+
+Memory: a flag, the time, the nine states, their covariance; field, H and gravity gradient at the last good call; the
+commanded dipole times its seconds since then, and when the last call was. Kernels take the place `m0` of the filter in a
+law's memory and `p0` of its numbers in the law's params.
 """
 
 from __future__ import annotations
@@ -34,8 +37,8 @@ from fieldline.mechanics.rigid_body import gravity_gradient_torque
 STATES = 9
 HAS, TIME, RATE, DIPOLE, TORQUE, COVARIANCE = 0, 1, 2, 5, 8, 11
 FIELD = COVARIANCE + STATES * STATES
-MOMENTUM = FIELD + 3
-MEMORY = MOMENTUM + 3
+MOMENTUM, KNOWN_TORQUE, GIVEN, CALLED = FIELD + 3, FIELD + 6, FIELD + 9, FIELD + 12
+MEMORY = CALLED + 1
 ON, INERTIA, INVERSE, RATE_VAR, NOISE_DENSITY, DIPOLE_VAR, DIPOLE_DRIFT, TORQUE_VAR, TORQUE_DRIFT = (
     0,
     1,
@@ -87,14 +90,15 @@ def _known_torque(measurement, params, p0):
 
 @njit(cache=True)
 def _predict(dt, measurement, momentum_b, memory, m0, params, p0):
-    """The rate brought to now by (33), first order in the step; fills the rows of the rate's derivatives (3, 9)."""
+    """The rate brought to now by (33); gives the rows of the rate's derivatives (3, 9)."""
     inertia, inv = _matrix(params, p0 + INERTIA), _matrix(params, p0 + INVERSE)
     rate, dipole = _vector(memory, m0 + RATE), _vector(memory, m0 + DIPOLE)
     middle = scale(0.5, add(rate, lifted(measurement.omega_bi_b)))
     field = scale(0.5, add(_vector(memory, m0 + FIELD), lifted(measurement.field_b)))
     whole = add(matvec(inertia, middle), momentum_b)
-    moment = axpy(params[p0 + DUTY], lifted(measurement.dipole_b), dipole)
-    torque = add(cross(moment, field), add(_vector(memory, m0 + TORQUE), _known_torque(measurement, params, p0)))
+    moment = axpy(params[p0 + DUTY] / dt, _vector(memory, m0 + GIVEN), dipole)
+    known = scale(0.5, add(_vector(memory, m0 + KNOWN_TORQUE), _known_torque(measurement, params, p0)))
+    torque = add(cross(moment, field), add(_vector(memory, m0 + TORQUE), known))
     wheels = sub(momentum_b, _vector(memory, m0 + MOMENTUM))
     push = sub(scale(dt, sub(torque, cross(middle, whole))), wheels)
     _store(memory, m0 + RATE, add(rate, matvec(inv, push)))
@@ -181,6 +185,8 @@ def residual_estimate(t, measurement, momentum_b, memory, m0, params, p0):
     """
     if params[p0 + ON] < 0.5:
         return ZERO, ZERO
+    _store(memory, m0 + GIVEN, axpy(t - memory[m0 + CALLED], lifted(measurement.dipole_b), _vector(memory, m0 + GIVEN)))
+    memory[m0 + CALLED] = t
     if field_known(measurement) and rate_known(measurement):
         dt = t - memory[m0 + TIME]
         if memory[m0 + HAS] > 0.5 and 0.0 < dt <= params[p0 + GAP]:
@@ -192,6 +198,8 @@ def residual_estimate(t, measurement, momentum_b, memory, m0, params, p0):
         memory[m0 + TIME] = t
         _store(memory, m0 + FIELD, lifted(measurement.field_b))
         _store(memory, m0 + MOMENTUM, momentum_b)
+        _store(memory, m0 + KNOWN_TORQUE, _known_torque(measurement, params, p0))
+        _store(memory, m0 + GIVEN, ZERO)
     return _vector(memory, m0 + DIPOLE), _vector(memory, m0 + TORQUE)
 
 

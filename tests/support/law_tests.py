@@ -1,0 +1,30 @@
+"""What tests of laws share: a measurement with everything known, and a design context that needs no flight."""
+
+import numpy as np
+
+from fieldline.control import LAWS
+from fieldline.sensing.measurement import new_measurement
+from tiny_flight import TinyFlight
+
+REQUIRED = {"three-coil": {"target_i": (1.0, 0.0, 0.0)}, "two-coil": {"target_i": (1.0, 0.0, 0.0)}}
+FLIGHT = TinyFlight(inertia=(5.0, 6.0, 2.0), altitude_km=600.0, inclination_deg=70.0, moment_max=2.0, period_s=1.0)
+CONTEXT = FLIGHT.context(orbits=1)
+PACKED = {name: law.pack(REQUIRED.get(name, {}), CONTEXT) for name, law in LAWS.items()}
+
+
+def known_measurement(field_b=(2e-5, -1e-5, 1.5e-5), omega_b=(0.0, 0.0, 0.0), q_bi=(0.0, 0.0, 0.0, 1.0), time_s=0.0):
+    """Everything valid; a place on the orbit, three wheels at rest."""
+    measurement = new_measurement(0, 3)
+    measurement.field_b[:], measurement.field_time_s[0] = field_b, time_s
+    measurement.field_i[:] = field_b
+    measurement.rate_b[:] = measurement.omega_bi_b[:] = omega_b
+    measurement.q_bi[:] = np.asarray(q_bi, dtype=float) / np.linalg.norm(q_bi)
+    measurement.position_i[:], measurement.velocity_i[:] = (6.97e6, 0.0, 0.0), (0.0, 2600.0, 7100.0)
+    measurement.valid[:] = 1.0
+    return measurement
+
+
+def called(name, measurement, t=0.0, memory=None, params=None):
+    """The command of a law at one call."""
+    memory = np.zeros(LAWS[name].memory) if memory is None else memory
+    return LAWS[name].kernel(t, measurement, memory, PACKED[name] if params is None else params)
