@@ -66,7 +66,9 @@ def test_another_field_model_and_another_star():
     study = field_along(35.0, 805e3, (60.0, 20.0, 0.0), "study", "2025-06-01T00:00:00", 6050.0)
     assert igrf.shape == study.shape
     assert 1.6e-5 < np.linalg.norm(igrf, axis=1).min() < np.linalg.norm(igrf, axis=1).max() < 4.6e-5
-    day = observatory(model="IGRF-14", **HOUR)
+    coarse = field_along(35.0, 805e3, (60.0, 20.0, 0.0), "IGRF-14", "2025-06-01T00:00:00", 6050.0, degree=1)
+    assert 0.0 < np.abs(coarse - igrf).max() < 1.5e-5
+    day = observatory(model="IGRF-14", inertia_kg_m2=np.array([1200.0, 1356.0, 1400.0]), **HOUR)
     assert float(day["within_fraction"]) > 0.95
     aside = observatory(right_ascension_deg=200.0, declination_deg=-40.0, roll_deg=30.0, **HOUR)
     assert float(aside["within_fraction"]) > 0.9
@@ -83,6 +85,7 @@ def test_stretches():
         ({"roll": "held"}, "roll"),
         ({"coils": 1}, "coils"),
         ({"model": "IGRF-99"}, "IGRF-14"),
+        ({"degree": 4}, "no degree"),
         ({"model": "IGRF-14", "start_utc": "1850-01-01"}, "1850"),
         ({"altitude_m": 500.0}, "altitude_m"),
     ],

@@ -6,7 +6,7 @@ are 0.388 lb per 1,000 ft: both are AWG 29. No. 25 would take 0.87 W and weigh 1
 
 from __future__ import annotations
 
-from fieldline.cases.ames_1961.dipole_field import SOURCE
+from fieldline.cases.ames_1961.dipole_field import SOURCE, settings_text
 from fieldline.design import CoilDesign, design_coil
 
 SCALARS = {
@@ -52,8 +52,6 @@ def coil(
 
 def dataset_of(design: CoilDesign, settings: dict):
     """Scalars and trade curve of a design."""
-    import json
-
     curve = design.trade_curve()
     dataset = curve[["power_w", "mass_kg"]].rename(power_w="trade_power_w", mass_kg="trade_mass_kg")
     for name, (units, words) in SCALARS.items():
@@ -62,6 +60,6 @@ def dataset_of(design: CoilDesign, settings: dict):
         "title": f"Coil of {design.moment_a_m2:.4g} A m², {design.loop.words}, {design.gauge}",
         "case": "ames_1961_coil",
         "source": f"{SOURCE}, equations (13) to (19)",
-        "settings_json": json.dumps(settings),
+        "settings_json": settings_text(settings),
     }
     return dataset

@@ -89,6 +89,14 @@ def times(duration_s: float, step_s: float) -> np.ndarray:
     return step_s * np.arange(count)
 
 
+def settings_text(settings: dict) -> str:
+    """The arguments of a call as JSON, for its provenance."""
+    import json
+
+    kinds = (tuple, list, np.ndarray, np.generic)
+    return json.dumps({k: np.asarray(v).tolist() if isinstance(v, kinds) else v for k, v in settings.items()})
+
+
 def minima_of(magnitude) -> np.ndarray:
     """Indices of the minima inside a series."""
     values = np.asarray(magnitude)
@@ -165,8 +173,6 @@ def _basis(seconds: np.ndarray, mean_motion: float) -> tuple[np.ndarray, np.ndar
 
 def _dataset(seconds: np.ndarray, chain: Chain, polar_tesla: float, mean_motion: float, settings: dict):
     """The signals with their units."""
-    import json
-
     import xarray as xr
 
     magnitude = np.linalg.norm(chain.field_i, axis=1)
@@ -193,7 +199,7 @@ def _dataset(seconds: np.ndarray, chain: Chain, polar_tesla: float, mean_motion:
             "title": f"Field along a circular orbit at {settings['inclination_deg']:g} deg, tilted dipole",
             "case": "ames_1961_field",
             "source": f"{SOURCE}, Appendix A",
-            "settings_json": json.dumps(settings),
+            "settings_json": settings_text(settings),
             "polar_field_tesla": polar_tesla,
             "mean_motion_rad_s": mean_motion,
             "period_s": 2.0 * np.pi / mean_motion,

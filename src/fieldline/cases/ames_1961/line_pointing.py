@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.cases.ames_1961.dipole_field import SOURCE, times
+from fieldline.cases.ames_1961.dipole_field import SOURCE, settings_text, times
 from fieldline.cases.ames_1961.flight import STATES, Vehicle, fly
 from fieldline.cases.erbs_like import number
 from fieldline.errors import InputError
@@ -108,7 +108,7 @@ def pointing(
         title=f"{coils} coils, B_x/B = {field_ratio:g}, {WORDS[transverse]}, from {_shown(error_arcsec)} arcsec",
         case="ames_1961_pointing",
         source=f"{SOURCE}; constants assumed",
-        settings_json=_json(settings),
+        settings_json=settings_text(settings),
     )
     return dataset
 
@@ -272,9 +272,3 @@ def _field_table(field_tesla: float, ratio: float, ratio_rate: float, transverse
 
 def _shown(pair) -> str:
     return " and ".join(f"{value:g}" for value in pair)
-
-
-def _json(settings: dict) -> str:
-    import json
-
-    return json.dumps({k: np.asarray(v).tolist() if isinstance(v, tuple | list | np.ndarray) else v for k, v in settings.items()})

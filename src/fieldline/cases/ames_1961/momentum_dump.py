@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from fieldline.cases.ames_1961.dipole_field import SOURCE, across_field_eigenvalues, field
+from fieldline.cases.ames_1961.dipole_field import SOURCE, across_field_eigenvalues, field, settings_text
 from fieldline.cases.ames_1961.flight import clipped, field_at
 from fieldline.cases.ames_1961.line_pointing import three
 from fieldline.cases.erbs_like import number
@@ -81,7 +81,7 @@ def dump(
     -------
     Dataset: momentum [N m s], moment [A m^2], fraction |H|/|H0|, along_field [N m s]; eigenvalues of the mean of I - b b^T.
     """
-    settings = {k: list(v) if isinstance(v, tuple) else v for k, v in locals().items()}
+    settings = dict(locals())
     start = three("momentum", momentum)
     size = float(np.linalg.norm(start))
     number("|momentum|", size, 1e-12)
@@ -137,8 +137,6 @@ def coils_against_jets(
 
 def _dataset(along, momentum: np.ndarray, moment: np.ndarray, size: float, settings: dict):
     """The signals with their units."""
-    import json
-
     import xarray as xr
 
     b = along["field_i"].values / along["magnitude"].values[:, None]
@@ -157,7 +155,7 @@ def _dataset(along, momentum: np.ndarray, moment: np.ndarray, size: float, setti
             "title": f"Momentum dumped at {settings['inclination_deg']:g} deg, K = {settings['gain_per_s']:g} /s",
             "case": "ames_1961_dump",
             "source": f"{SOURCE}, equations (11) and (12)",
-            "settings_json": json.dumps(settings),
+            "settings_json": settings_text(settings),
             "period_s": along.attrs["period_s"],
         },
     )

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.cases.ames_1961.dipole_field import ALTITUDE_M, SOURCE, TILT_DEG, field, times
+from fieldline.cases.ames_1961.dipole_field import ALTITUDE_M, SOURCE, TILT_DEG, field, settings_text, times
 from fieldline.cases.ames_1961.line_pointing import (
     INERTIA_KG_M2,
     MOMENT_LIMIT_A_M2,
@@ -48,6 +48,7 @@ def observatory(
     declination_deg: float = 20.0,
     roll_deg: float = 0.0,
     model: str = "study",
+    degree: int | None = None,
     start_utc: str = "2025-06-01T00:00:00",
     duration_s: float = SECONDS_PER_DAY,
     disturbance_n_m=(0.0, 0.0, 1e-5),
@@ -70,7 +71,7 @@ def observatory(
     ----------
     coils : 3 or 2. inclination_deg, altitude_m : of the orbit, its node at zero right ascension.
     right_ascension_deg, declination_deg, roll_deg : the star and the roll about the line.
-    model : "study" (the tilted dipole) or a field model's name, with start_utc.
+    model, degree : "study" (the tilted dipole) or a field model's name, up to a degree, with start_utc.
     disturbance_n_m : constant, in axes that do not turn, x along the line. roll, roll_rate_rad_s : "wheel" or "free".
     watts_per_moment2 : power of a coil over its moment squared [W/(A m^2)^2]. tolerance_arcsec : of each axis.
 
@@ -83,10 +84,10 @@ def observatory(
         raise InputError(f"roll must be one of {', '.join(ROLLS)}; got {roll!r}.")
     if coils not in (2, 3):
         raise InputError(f"coils must be 2 or 3; got {coils!r}.")
-    settings = {k: list(v) if isinstance(v, tuple) else v for k, v in locals().items()}
+    settings = dict(locals())
     line_deg = three("right_ascension_deg, declination_deg, roll_deg", (right_ascension_deg, declination_deg, roll_deg))
     seconds = times(duration_s, sample_s)
-    field_s = field_along(inclination_deg, altitude_m, line_deg, model, start_utc, duration_s)
+    field_s = field_along(inclination_deg, altitude_m, line_deg, model, start_utc, duration_s, degree)
     vehicle = vehicle_of(
         inertia_kg_m2=inertia_kg_m2,
         coils=coils,
@@ -107,20 +108,22 @@ def observatory(
     return dataset
 
 
-def field_along(inclination_deg, altitude_m, line_deg, model: str, start_utc: str, duration_s: float) -> np.ndarray:
+def field_along(inclination_deg, altitude_m, line_deg, model: str, start_utc: str, duration_s: float, degree=None) -> np.ndarray:
     """(n, 3) [T] every FIELD_STEP_S, axes x along the line, by the study's dipole or a field model."""
     names = ("right_ascension_deg", "declination_deg", "roll_deg")
     line = dict(zip(names, line_deg, strict=True))
     span = duration_s + 2.0 * FIELD_STEP_S
     along = field(inclination_deg, altitude_m, TILT_DEG, duration_s=span, step_s=FIELD_STEP_S, **line)
     if model == "study":
+        if degree is not None:
+            raise InputError('the study\'s dipole has no degree; leave it out, or choose model="IGRF-14".')
         return np.ascontiguousarray(along["field_s"].values)
-    field_i = _model_field(along["position_i"].values, along["seconds"].values, model, start_utc)
+    field_i = _model_field(along["position_i"].values, along["seconds"].values, model, start_utc, degree)
     right_ascension, declination, roll = np.radians(line_deg)
     return np.ascontiguousarray(about_x(roll, about_y(-declination, about_z(right_ascension, field_i))))
 
 
-def _model_field(position_i: np.ndarray, seconds: np.ndarray, model: str, start_utc: str) -> np.ndarray:
+def _model_field(position_i: np.ndarray, seconds: np.ndarray, model: str, start_utc: str, degree) -> np.ndarray:
     """(n, 3) [T], inertial axes, of a field model along the orbit from a date on."""
     from fieldline.environment import magnetic_field
     from fieldline.frames.earth_rotation import dcm_ei
@@ -128,7 +131,7 @@ def _model_field(position_i: np.ndarray, seconds: np.ndarray, model: str, start_
 
     time_utc = as_utc(start_utc, "start_utc") + np.rint(1e9 * seconds).astype("timedelta64[ns]")
     to_earth = dcm_ei(time_utc)
-    field_e = magnetic_field(np.einsum("nij,nj->ni", to_earth, position_i), time_utc, model=model)
+    field_e = magnetic_field(np.einsum("nij,nj->ni", to_earth, position_i), time_utc, model=model, degree=degree)
     return np.einsum("nji,nj->ni", to_earth, field_e)
 
 
@@ -192,13 +195,11 @@ def _least_near(ratio: np.ndarray, one: slice) -> float:
 
 
 def _provenance(settings: dict) -> dict:
-    import json
-
     words = f"{settings['coils']} coils, roll {settings['roll']}, {settings['model']} field"
     return {
         "title": f"A day on one star: {words}",
         "case": "ames_1961_observatory",
         "source": f"{SOURCE}; scenario beyond the study",
-        "settings_json": json.dumps(settings),
+        "settings_json": settings_text(settings),
         "tolerance_arcsec": float(settings["tolerance_arcsec"]),
     }
