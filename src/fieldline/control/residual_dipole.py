@@ -157,8 +157,9 @@ def _correct(measurement, memory, m0, params, p0):
             gain[i] = row[i] / spread
         for i in range(STATES):
             state[i] += gain[i] * news
-            for k in range(STATES):
+            for k in range(i, STATES):
                 P[i, k] -= gain[i] * row[k]
+                P[k, i] = P[i, k]
 
 
 @njit(cache=True)
