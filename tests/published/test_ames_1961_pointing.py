@@ -202,7 +202,7 @@ def independent(settings, seconds):
 def test_against_an_adaptive_solver(settings):
     run = pointing(duration_s=150.0, sample_s=1.0, **settings)
     difference = run["error"].values - independent(settings, run["seconds"].values)
-    assert np.abs(difference).max() < 4e-3  # [arcsec]; two solvers of the reference differed by 0.0018 and 0.0037
+    assert np.abs(difference).max() < 1e-3  # [arcsec]; 4e-4 found, 2e-3 and 4e-3 between the programs of the re-derivation
 
 
 @pytest.mark.kernels
