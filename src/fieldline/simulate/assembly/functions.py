@@ -21,7 +21,7 @@ class UserFunctions:
 
     def __init__(self, scenario, host: Host):
         """Find them all; a function that Numba has compiled stays compiled, any other is called as plain Python."""
-        self.slots = Slots(no_load, "loads and events")
+        self.slots = Slots(no_load, LOAD, "loads and events")
         self._host = host
         self._plain: list[tuple[object, np.ndarray]] = []
         self.loads, self.load_names = [], []

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from fieldline.errors import InputError, nearest
-from fieldline.simulate.loop.functions import SLOTS, Callback
+from fieldline.simulate.loop.functions import SLOTS, Callback, Functions
 
 
 def function_of(name: str, folder: Path, where: str):
@@ -121,9 +121,9 @@ class Host:
 class Slots:
     """Compiled functions of one kind, in the loop's few places."""
 
-    def __init__(self, filler, what: str):
-        """`filler` fills the places that stay empty."""
-        self._filler, self._what = filler, what
+    def __init__(self, filler, signature, what: str):
+        """`filler` fills the places that stay empty; all have one signature."""
+        self._filler, self._signature, self._what = filler, signature, what
         self.functions: list = []
 
     def add(self, function) -> int:
@@ -133,6 +133,6 @@ class Slots:
         self.functions.append(function)
         return len(self.functions) - 1
 
-    def filled(self) -> tuple:
+    def filled(self) -> Functions:
         """All slots."""
-        return tuple(self.functions) + (self._filler,) * (SLOTS - len(self.functions))
+        return Functions([*self.functions, *(self._filler,) * (SLOTS - len(self.functions))], self._signature)

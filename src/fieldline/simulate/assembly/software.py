@@ -6,9 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fieldline.control import LAWS
 from fieldline.errors import InputError
 from fieldline.simulate.assembly.boards import depth_of, measurement_row
 from fieldline.simulate.assembly.host import Host, Slots, compiled, function_of
+from fieldline.simulate.estimators import ESTIMATORS
 from fieldline.simulate.loop import records as loop
 from fieldline.simulate.loop.flight_software import KNOWLEDGE
 from fieldline.simulate.loop.functions import LAW, no_law
@@ -56,8 +58,17 @@ def _task(scenario, k: int, design) -> Task:
             memory=np.zeros(USUAL_MEMORY if record.memory is None else record.memory),
             params=_users_parameters(record.parameters, where),
         )
-    from fieldline.control import LAWS
-
+    if record.role == "estimator":
+        return Task(
+            record=record,
+            name=record.name or record.law,
+            body=body,
+            law=ESTIMATORS[record.law].make(record.parameters, design(body, 1.0 / record.rate_hz)),
+            plain=True,
+            commands=(),
+            memory=np.zeros(0),
+            params=np.zeros(0),
+        )
     known = LAWS[record.law]
     params = np.array(known.pack(record.parameters, design(body, 1.0 / record.rate_hz)), dtype=float)
     return Task(
@@ -112,7 +123,7 @@ def replies_of(scenario, task: Task) -> int:
 
 def place(software: list[Task], tasks: loop.Tasks, boards: loop.Boards, host: Host):
     """Give every task its slot or its number; (laws, memories, parameters) of the slots."""
-    slots = Slots(no_law, "laws")
+    slots = Slots(no_law, LAW, "laws")
     memories, parameters = [], []
     for i, task in enumerate(software):
         if task.plain:

@@ -10,6 +10,7 @@ import ctypes
 
 import numpy as np
 from numba import njit, types
+from numba.extending import typeof_impl
 
 from fieldline.sensing.measurement import Measurement
 
@@ -31,6 +32,28 @@ def no_law(t, measurement, memory, params):
 def no_load(t, state, params):
     """Fills an empty slot."""
     return np.zeros(6)
+
+
+class Functions(tuple):
+    """Functions of one signature, as the loop takes them.
+
+    A plain tuple of functions is one for Numba too, but it warns, at each call, that its search for their common signature
+    is experimental; here nothing is searched.
+    """
+
+    signature: object
+
+    def __new__(cls, functions, signature):
+        """`signature` is LAW or LOAD."""
+        made = super().__new__(cls, functions)
+        made.signature = signature
+        return made
+
+
+@typeof_impl.register(Functions)
+def _type_of_functions(functions, context):
+    """Numba's type of them."""
+    return types.UniTuple(types.FunctionType(functions.signature), len(functions))
 
 
 class Callback(types.WrapperAddressProtocol):
