@@ -71,7 +71,9 @@ def air_of(air, start, duration_s: float):
             scale_height_m=1e3 * air.scale_height_km,
         )
     if air.model == "msis":
-        return atmosphere_model("msis", start_utc=start, duration_s=duration_s, f107=air.f107, f107a=air.f107_average, ap=air.ap)
+        return atmosphere_model(
+            "msis", start_utc=start, duration_s=duration_s, f107_sfu=air.f107, f107_average_sfu=air.f107_average, ap=air.ap
+        )
     return atmosphere_model(air.model)
 
 
