@@ -6,6 +6,8 @@ leaves its answer in `shared.reply`. Both see the same rows of `Boards`, as a `M
 
 from __future__ import annotations
 
+from math import nan
+
 from fieldline.compiled import counting, kernel
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import three
@@ -18,6 +20,7 @@ from fieldline.simulate.loop.records import NEVER, Outcome
 
 LAW_RAISED, LAW_SHAPE, LAW_NOT_FINITE = int(Outcome.LAW_RAISED), int(Outcome.LAW_SHAPE), int(Outcome.LAW_NOT_FINITE)
 KNOWLEDGE = 7  # numbers of an estimator's answer
+SILENT, ANSWERED = 1, 2  # an estimator's last call
 
 
 @kernel
@@ -43,8 +46,13 @@ def measurement_of(boards, b):
 
 @kernel
 def refresh(t, b, run):
-    """What is known at any time: the orbit where no receiver reads it, the wheels' speeds, the reference field."""
-    y, plant, sensors, boards = run.y, run.plant, run.sensors, run.boards
+    """What is known at any time: commands in effect, orbit where no receiver reads it, wheels' speeds, reference field."""
+    y, plant, sensors, boards, actuators = run.y, run.plant, run.sensors, run.boards, run.actuators
+    boards.dipole_b[b] = 0.0
+    for k in range(actuators.torquers):
+        if actuators.body[k] == b:
+            for j in range(3):
+                boards.dipole_b[b, j] += actuators.wanted[k] * plant.torquers.axis[k, j]
     if sensors.suite.navigations.present[b] == 0.0:
         for j in range(3):
             boards.position_i[b, j] = y[STATE * b + j]
@@ -74,6 +82,15 @@ def believe(reply, b, boards):
         boards.omega_bi_b[b, j] = reply[4 + j]
     boards.valid[b, ATTITUDE] = 1.0
     boards.valid[b, RATE] = 1.0
+
+
+@kernel
+def withdraw(b, boards):
+    """An estimator that had an answer has none any more."""
+    boards.q_bi[b] = nan
+    boards.omega_bi_b[b] = nan
+    boards.valid[b, ATTITUDE] = 0.0
+    boards.valid[b, RATE] = 0.0
 
 
 @kernel
@@ -112,13 +129,17 @@ def run_task(t, i, run, laws, memories, parameters, call):
     reply = shared.reply
     shared.culprit[1] = count
     if tasks.estimator[i] != 0 and count == 0:
-        return 0  # it knows nothing yet
+        if tasks.estimator[i] == ANSWERED:
+            withdraw(b, boards)
+        tasks.estimator[i] = SILENT
+        return 0
     if count != tasks.replies[i]:
         return LAW_SHAPE
     if not all_finite(reply, count):
         return LAW_NOT_FINITE
     if tasks.estimator[i] != 0:
         believe(reply, b, boards)
+        tasks.estimator[i] = ANSWERED
         return 0
     commands = shared.commands
     for k in range(commands.shape[0]):

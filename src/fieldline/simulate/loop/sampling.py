@@ -43,8 +43,6 @@ def sample(t, row, kind, b, run, rng):
         dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
         field_b = to_body(q, field_at(r, dcm_ei, plant.surroundings))
         dipole = commanded_dipole(t, b, plant.torquers, run.inputs)
-        for j in range(3):
-            board.dipole_b[j] = dipole[j]
         read_magnetometer(t, field_b, dipole, suite.magnetometers, b, rng, board)
         keep(t, row, board.field_b, record, clock)
     elif kind == GYRO:
