@@ -117,23 +117,27 @@ def _module_exists(name: str) -> bool:
 
 
 def known_laws() -> dict[str, Any]:
-    """Laws of the library by name."""
-    from fieldline import control
+    """Laws and estimators of the library by name."""
+    from fieldline.control import LAWS
+    from fieldline.simulate.estimators import ESTIMATORS
 
-    return getattr(control, "LAWS", {})
+    return {**LAWS, **ESTIMATORS}
 
 
 def _laws(scenario) -> Iterator[tuple[str, str]]:
     """Laws of the library exist, know their parameters and find their actuators."""
     laws = known_laws()
     for k, task in enumerate(scenario.software):
-        if task.is_users or not laws:
+        if task.is_users:
             continue
         if task.law not in laws:
             near = nearest(task.law, laws)
             yield f"software[{k}].law", f'unknown law "{shown(task.law)}"; {near} Or name your own as "file.py:function".'
             continue
         law = laws[task.law]
+        role = "controller" if law.commands else "estimator"
+        if task.role != role:
+            yield f"software[{k}].role", f'must be "{role}" for the law "{law.name}"; got "{task.role}".'
         for key in task.parameters:
             if key not in law.parameters:
                 yield (
