@@ -8,7 +8,7 @@ gradient:
     dtheta/dt = w
     J dw/dt   = ([L] [O] - [O] J [O] + 3 n^2 ([z] J [z] - [J z] [z])) theta + ([L] - J [O] - [O] J) w + M x B   (32)
 
-and for the moment M the input matrix -J^-1 [B](t). What is constant is left out: O x L and the gravity gradient at theta = 0
+and for the moment M the input matrix -J^-1 [B], B of t. What is constant is left out: O x L and the gravity gradient at theta = 0
 vanish where a principal axis is held along each orbital axis and H lies along O.
 
 Held in inertial axes (`orbital_rate_b` zero, `nadir_b` None) the gravity gradient turns twice per orbit: left to the

@@ -43,6 +43,8 @@ def gyro_known(measurement):
 def attitude_known(measurement):
     """Whether the attitude q_bi is known on board: valid, and a quaternion within a tenth of unit length."""
     q = measurement.q_bi
+    if not (finite3(lifted(q)) and isfinite(q[3])):
+        return False
     square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
     return measurement.valid[ATTITUDE] > 0.5 and 0.81 < square < 1.21
 
@@ -57,9 +59,10 @@ def rate_known(measurement):
 def orbit_known(measurement):
     """Whether position and velocity are known on board: valid, finite, and not along one line."""
     r, v = lifted(measurement.position_i), lifted(measurement.velocity_i)
+    if not (measurement.valid[ORBIT] > 0.5 and finite3(r) and finite3(v)):
+        return False
     h = cross(r, v)
-    moves = dot(h, h) > 1e-12 * dot(r, r) * dot(v, v)
-    return measurement.valid[ORBIT] > 0.5 and finite3(r) and finite3(v) and moves
+    return dot(h, h) > 1e-12 * dot(r, r) * dot(v, v)
 
 
 @njit(cache=True)

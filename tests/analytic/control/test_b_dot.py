@@ -8,7 +8,7 @@ from fieldline.control.b_dot import b_dot_gain
 from law_tests import CONTEXT, FLIGHT, called, known_measurement
 from tiny_flight import TinyFlight
 
-pytestmark = pytest.mark.kernels
+kernels = pytest.mark.kernels  # flights of hours stay out: they are slow without compilation
 B_DOT, BANG_BANG = LAWS["b-dot"], LAWS["b-dot-bang-bang"]
 FIRST, SECOND = (2e-5, 0.0, 1e-5), (2e-5, 4e-6, 0.8e-5)
 
@@ -26,12 +26,14 @@ def readings(law, params, *samples):
     return np.array(commands)
 
 
+@kernels
 def test_gain_follows_the_published_rule():
     assert b_dot_gain(1.1e-3, np.pi / 2, np.diag([0.03, 0.04, 0.01])) == pytest.approx(2 * 1.1e-3 * 2.0 * 0.01)
     params = B_DOT.pack({}, CONTEXT)
     assert params[0] == pytest.approx(2 * FLIGHT.mean_motion * (1 + np.sin(FLIGHT.inclination)) * 2.0)
 
 
+@kernels
 def test_moment_is_against_the_difference():
     params = B_DOT.pack({"gain_n_m_s": 1e-3}, CONTEXT)
     first, second = readings(B_DOT, params, (0.0, FIRST, 0.0), (2.0, SECOND, 2.0))
@@ -40,12 +42,14 @@ def test_moment_is_against_the_difference():
     assert np.allclose(second, -1e-3 / np.dot(SECOND, SECOND) * change, rtol=1e-14)  # (20)
 
 
+@kernels
 def test_bang_bang_takes_the_signs_outside_the_dead_band():
     params = BANG_BANG.pack({"moment_a_m2": (0.2, 0.3, 0.4), "dead_band_tesla_s": 1e-9}, CONTEXT)
     command = readings(BANG_BANG, params, (0.0, FIRST, 0.0), (2.0, SECOND, 2.0))[1]
     assert command.tolist() == [0.0, -0.3, 0.4]  # (21)
 
 
+@kernels
 def test_low_pass_settles_on_a_steady_slope():
     params = B_DOT.pack({"gain_n_m_s": 1.0, "low_pass_s": 5.0}, CONTEXT)
     ramp = [(float(k), (2e-5, 1e-7 * k + (2e-8 if k % 2 else 0.0), 0.0), float(k)) for k in range(80)]
@@ -55,6 +59,7 @@ def test_low_pass_settles_on_a_steady_slope():
     assert smooth.mean() == pytest.approx(raw.mean(), rel=0.05)
 
 
+@kernels
 def test_between_readings_the_command_stands():
     # The torquers work while the magnetometer rests: calls at 1 s, readings at 4 s.
     params = B_DOT.pack({"gain_n_m_s": 1e-3}, CONTEXT)
@@ -64,6 +69,7 @@ def test_between_readings_the_command_stands():
     assert not commands[4].any()  # too old: what the body does now is not known
 
 
+@kernels
 @pytest.mark.parametrize("spoilt", [None, (np.nan, 0.0, 1e-5), (0.0, 0.0, 0.0), (np.inf, 0.0, 0.0)])
 @pytest.mark.parametrize("law", [B_DOT, BANG_BANG], ids=lambda law: law.name)
 def test_a_bad_reading_gives_no_moment_and_breaks_the_chain(law, spoilt):
@@ -73,12 +79,14 @@ def test_a_bad_reading_gives_no_moment_and_breaks_the_chain(law, spoilt):
     assert [bool(c.any()) for c in commands] == [False, True, False, False, True]
 
 
+@kernels
 def test_a_long_gap_breaks_the_chain():
     params = B_DOT.pack({"gap_s": 3.0}, CONTEXT)
     commands = readings(B_DOT, params, (0.0, FIRST, 0.0), (5.0, SECOND, 5.0), (6.0, FIRST, 6.0))
     assert [bool(c.any()) for c in commands] == [False, False, True]
 
 
+@kernels
 def test_gyro_gives_the_torque_across_the_field():
     params = B_DOT.pack({"derivative": "gyro", "gain_n_m_s": 2e-3}, CONTEXT)
     omega, field = np.array([0.02, -0.01, 0.03]), np.array([2e-5, -1e-5, 1.5e-5])
@@ -87,12 +95,14 @@ def test_gyro_gives_the_torque_across_the_field():
     assert np.allclose(np.cross(moment, field), -2e-3 * across, rtol=1e-12)
 
 
+@kernels
 def test_gyro_that_is_not_valid_gives_no_moment():
     measurement = known_measurement(omega_b=(0.1, 0.0, 0.0))
     measurement.valid[1] = 0.0
     assert not called("b-dot", measurement, params=B_DOT.pack({"derivative": "gyro"}, CONTEXT)).any()
 
 
+@kernels
 def test_handover_with_hysteresis():
     params = B_DOT.pack({"rate_off_deg_s": 1.0, "rate_on_deg_s": 3.0}, CONTEXT)
     samples, angle = [], 0.0

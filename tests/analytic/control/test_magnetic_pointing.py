@@ -15,7 +15,7 @@ from fieldline.errors import InputError
 from law_tests import CONTEXT, FLIGHT, called, known_measurement
 from tiny_flight import TinyFlight
 
-pytestmark = pytest.mark.kernels
+kernels = pytest.mark.kernels  # flights of hours stay out: they are slow without compilation
 NAMES = ("magnetic-lqr-periodic", "magnetic-lqr-asymptotic", "magnetic-lqr-averaged")
 # A dipole of 17 mA m2 and the torque of drag on a centre of pressure 5 to 10 cm off: nobody told the regulator.
 MICROSATELLITE = {
@@ -39,6 +39,7 @@ def flown_from_30_deg(name, table, orbits, flight, momentum=(0.0, 0.0, 0.0)):
     return np.array([part.max() for part in np.array_split(error, orbits)])
 
 
+@kernels
 def test_pd_moment_is_projected():
     params = LAWS["magnetic-pd"].pack({"natural_frequency_rad_s": 1e-3, "damping_ratio": 0.5}, CONTEXT)
     theta, rate = np.array([0.02, -0.01, 0.03]), np.array([1e-5, 2e-5, -1e-5])
@@ -49,6 +50,7 @@ def test_pd_moment_is_projected():
     assert np.allclose(np.cross(moment, field), wanted - field * (wanted @ field) / (field @ field), rtol=1e-9)
 
 
+@kernels
 @pytest.mark.parametrize("name", ["magnetic-pd", *NAMES])
 def test_a_large_moment_is_shortened_and_keeps_its_direction(name):
     q = Rotation.from_rotvec([0.3, -0.2, 0.5]).as_quat()
@@ -59,6 +61,7 @@ def test_a_large_moment_is_shortened_and_keeps_its_direction(name):
     assert np.allclose(short, 0.3 * free, rtol=1e-12)
 
 
+@kernels
 def test_periodic_gains_are_those_of_the_facade():
     table = {"target": "nadir", "angle_deg": 2.0, "rate_deg_s": 0.01, "moment_a_m2": 0.03, "orbits": 1}
     params = LAWS["magnetic-lqr-periodic"].pack(table, CONTEXT)
@@ -76,6 +79,7 @@ def test_periodic_gains_are_those_of_the_facade():
         assert np.allclose(by_law, result.gain[k], rtol=1e-9, atol=1e-9 * np.abs(by_law).max())
 
 
+@kernels
 def test_fold_averages_whole_repetitions():
     n, turns = 1e-3, np.linspace(0.0, 4.0, 4001)
     field = np.stack([np.cos(2 * np.pi * turns), np.floor(turns + 1e-9), turns], axis=-1)
@@ -87,12 +91,14 @@ def test_fold_averages_whole_repetitions():
         fold(seconds, field, n, 5)
 
 
+@kernels
 def test_gains_repeat_after_a_day_where_the_field_is_known_for_one():
     day, one = (LAWS["magnetic-lqr-periodic"].pack({"target": "nadir"}, FLIGHT.context(orbits)) for orbits in (15, 1))
     assert day[ORBITS] == 15.0 and one[ORBITS] == 1.0
     assert repeating_orbits(np.array([0.0, 90000.0]), FLIGHT.mean_motion) == 15
 
 
+@kernels
 def test_an_equatorial_orbit_of_an_upright_dipole_cannot_be_held():
     seconds = np.linspace(0.0, FLIGHT.orbit_s, 91)
     upright = np.tile([0.0, -3e-5, 0.0], (91, 1))

@@ -11,7 +11,7 @@ from fieldline.errors import InputError
 from law_tests import CONTEXT, FLIGHT, called, known_measurement
 from tiny_flight import TinyFlight
 
-pytestmark = pytest.mark.kernels
+kernels = pytest.mark.kernels  # flights of hours stay out: they are slow without compilation
 DUMP, POINT, BOTH = LAWS["momentum-dump"], LAWS["wheel-pointing"], LAWS["wheel-pointing-with-desaturation"]
 
 
@@ -21,11 +21,13 @@ def with_wheels(momentum):
     return measurement
 
 
+@kernels
 def test_gain_is_the_rate_at_which_the_field_turns():
     params = DUMP.pack({}, CONTEXT)
     assert params[0] == pytest.approx(2.0 * FLIGHT.mean_motion * (1.0 + np.sin(FLIGHT.inclination)))
 
 
+@kernels
 def test_moment_is_equation_11_with_the_wheels_own_axes():
     axes = np.array([[1.0, 0.0, 0.0], [0.0, 0.6, 0.8], [0.0, 0.0, -1.0]])
     params = DUMP.pack({"gain_per_s": 3e-4}, replace(CONTEXT, wheel_axes_b=axes))
@@ -35,12 +37,14 @@ def test_moment_is_equation_11_with_the_wheels_own_axes():
     assert np.allclose(moment, -3e-4 * np.cross(field, momentum) / (field @ field), rtol=1e-13)  # (11)
 
 
+@kernels
 def test_wanted_momentum_is_left_alone():
     params = DUMP.pack({"wanted_momentum_n_m_s": (0.0, -0.1, 0.0)}, CONTEXT)
     assert not called("momentum-dump", with_wheels((0.0, -0.1, 0.0)), params=params).any()
     assert called("momentum-dump", with_wheels((0.0, 0.1, 0.0)), params=params).any()
 
 
+@kernels
 def test_dumping_begins_and_ends_at_its_thresholds():
     params, memory = DUMP.pack({"start_n_m_s": 0.3, "stop_n_m_s": 0.1}, CONTEXT), np.zeros(DUMP.memory)
     sizes = (0.2, 0.31, 0.2, 0.11, 0.09, 0.2, 0.35)
@@ -48,6 +52,7 @@ def test_dumping_begins_and_ends_at_its_thresholds():
     assert works == [False, True, True, True, False, False, True]
 
 
+@kernels
 def test_thresholds_in_the_wrong_order_are_refused():
     with pytest.raises(InputError, match="must not be above start"):
         DUMP.pack({"start_n_m_s": 0.1, "stop_n_m_s": 0.2}, CONTEXT)
@@ -73,6 +78,7 @@ def test_wheels_point_as_the_linear_law_says(target):
     assert np.abs(error - wanted).max() < 0.02 * np.linalg.norm(turned)  # held for half a second at a time
 
 
+@kernels
 def test_wheels_rest_without_an_attitude():
     measurement = with_wheels((1.0, 0.0, 0.0))
     measurement.valid[3] = 0.0

@@ -8,7 +8,7 @@ from fieldline.control.residual_dipole import COVARIANCE, DIPOLE, FIELD, MEMORY,
 from law_tests import CONTEXT, known_measurement
 from tiny_flight import TinyFlight
 
-pytestmark = pytest.mark.kernels
+kernels = pytest.mark.kernels  # flights of hours stay out: they are slow without compilation
 LAW = LAWS["residual-dipole"]
 TRUE_DIPOLE, TRUE_TORQUE = np.array([0.02, -0.03, 0.01]), np.array([1e-7, -2e-7, 1.5e-7])
 
@@ -62,6 +62,7 @@ def test_a_gap_keeps_what_is_known():
     assert np.abs(memory[DIPOLE : DIPOLE + 3] - TRUE_DIPOLE).max() < 0.02 * np.linalg.norm(TRUE_DIPOLE)
 
 
+@kernels
 def test_nothing_known_is_nothing_commanded():
     measurement = known_measurement()
     measurement.valid[:] = 0.0

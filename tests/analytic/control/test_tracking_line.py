@@ -12,7 +12,7 @@ from fieldline.errors import InputError
 from law_tests import CONTEXT, FLIGHT, called, known_measurement
 from tiny_flight import step
 
-pytestmark = pytest.mark.kernels
+kernels = pytest.mark.kernels  # flights of hours stay out: they are slow without compilation
 LINE = {"target_i": (1.0, 0.0, 0.0)}
 J, FIELD = 1356.0, 2.5e-5  # kg m^2 and T, of a large observatory
 
@@ -21,18 +21,21 @@ def context(period_s=0.1):
     return replace(CONTEXT, inertia_kg_m2=J * np.eye(3), moment_max_a_m2=np.full(3, 50.0), period_s=period_s)
 
 
+@kernels
 def test_errors_are_the_turns_that_are_missing():
     turned = Rotation.from_rotvec([0.0, 2e-6, -3e-6]).as_quat()
     assert tracking_errors(tuple(turned), (1.0, 0.0, 0.0)) == pytest.approx((-2e-6, 3e-6), rel=1e-6)
     assert tracking_errors(tuple(Rotation.from_rotvec([0.3, 0.0, 0.0]).as_quat()), (1.0, 0.0, 0.0)) == (0.0, 0.0)
 
 
+@kernels
 def test_gains_place_the_poles():
     kp, kd, ki = line_gains(J, 0.1, 0.7, 0.02)
     assert np.allclose(np.poly([-0.02, *np.roots([1.0, 0.14, 0.01])]), [1.0, kd / J, kp / J, ki / J])
     assert line_gains(J, 0.1, 0.7) == pytest.approx((J * 0.01, J * 0.14, 0.0))
 
 
+@kernels
 @pytest.mark.parametrize("name", ["three-coil", "two-coil"])
 def test_torque_is_the_gain_times_the_limited_error(name):
     params = LAWS[name].pack(LINE | {"sensor_limit_arcsec": 1.2}, context())
@@ -44,6 +47,7 @@ def test_torque_is_the_gain_times_the_limited_error(name):
         assert np.allclose(torque[1:], J * 0.01 * ARCSECOND * np.array(errors), rtol=1e-6)
 
 
+@kernels
 def test_each_coil_saturates_by_itself():
     params = LAWS["three-coil"].pack(LINE | {"moment_max_a_m2": (10.0, 2.0, 3.0)}, context())
     turned = Rotation.from_rotvec(np.array([0.0, 1.0, -1.0]) * ARCSECOND).as_quat()
@@ -87,6 +91,7 @@ def test_a_steady_torque_leaves_an_error_that_the_integrator_takes_out():
     assert abs(with_it[-1, 0]) < 0.01 * abs(without[-1, 0])
 
 
+@kernels
 def test_a_lost_star_gives_no_moment_and_no_kick_afterwards():
     law, params = LAWS["three-coil"], LAWS["three-coil"].pack(LINE, context())
     memory, field = np.zeros(law.memory), np.array([0.5, 0.6, 0.62]) * FIELD
@@ -99,6 +104,7 @@ def test_a_lost_star_gives_no_moment_and_no_kick_afterwards():
     assert np.array_equal(law.kernel(0.2, known_measurement(field, q_bi=q), memory, params), first)
 
 
+@kernels
 def test_the_direction_must_be_one():
     with pytest.raises(InputError, match="three zeros"):
         LAWS["two-coil"].pack({"target_i": (0.0, 0.0, 0.0)}, CONTEXT)
