@@ -6,6 +6,9 @@ for it. `kernel` is for such functions: they may read, write and slice the array
 returns a new array may be called from them, nor may one array be assigned to another. Where a function is called that
 does return a new array (a user's law), that call sits in a function of its own, which is `counting`.
 
+`inner` is for kernels that compiled code alone calls: the way in from Python, which takes every array of every record
+apart, costs some two seconds of compilation each.
+
 Division by zero gives infinity or NaN, for the caller to find.
 """
 
@@ -14,4 +17,6 @@ from __future__ import annotations
 from numba import njit
 
 kernel = njit(cache=True, error_model="numpy", _nrt=False)
-counting = njit(cache=True, _nrt=True)  # said aloud: a callee inherits what its caller was compiled with
+inner = njit(cache=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+# Said aloud that it counts: a callee inherits what its caller was compiled with.
+counting = njit(cache=True, _nrt=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)

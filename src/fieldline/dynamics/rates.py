@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from math import sqrt, tan
 
-from fieldline.compiled import counting, kernel
+from fieldline.compiled import counting, inner, kernel
 from fieldline.dynamics.loads.hysteresis import MU0, induction_rate
 from fieldline.dynamics.loads.line import line_pull
 from fieldline.dynamics.loads.magnetic import commanded_dipole, dipole_torque, eddy_torque, row9
@@ -55,13 +55,13 @@ RAISED, WRONG_SHAPE, NOT_FINITE = 1, 2, 3  # what a user's load may do
 FIELD_STEP_S = 1.0  # over which the field's change along the orbit is taken, for the rods
 
 
-@kernel
+@inner
 def three(z, at):
     """Three numbers of an array as a tuple."""
     return (z[at], z[at + 1], z[at + 2])
 
 
-@kernel
+@inner
 def store(z, at, v):
     """A tuple as three numbers of an array."""
     z[at] = v[0]
@@ -69,14 +69,14 @@ def store(z, at, v):
     z[at + 2] = v[2]
 
 
-@kernel
+@inner
 def attitude_at(z, start, b):
     """q_bi of body b within a step."""
     q0 = (start[b, 0], start[b, 1], start[b, 2], start[b, 3])
     return quat_mul(q0, quat_exp(three(z, TANGENT * b + 6)))
 
 
-@kernel
+@inner
 def turn_rate(sigma, omega):
     """dsigma/dt of equation (2)."""
     square = dot(sigma, sigma)
@@ -96,7 +96,7 @@ def field_at(position_i, dcm_ei, surroundings):
     return add(matvec(transpose(dcm_ei), field_e), three(surroundings.uniform_field_i, 0))
 
 
-@kernel
+@inner
 def freeze_fields(t, dt, y, plant, out):
     """Field of every body [T], inertial axes, in the middle of a step that starts at t: for the cheap option.
 
@@ -112,7 +112,7 @@ def freeze_fields(t, dt, y, plant, out):
         put(out, b, field_at(place, dcm_ei, plant.surroundings))
 
 
-@kernel
+@inner
 def wheel_momentum(b, z, plant):
     """Momentum of body b's wheels [N m s], body axes."""
     wheels = plant.wheels
@@ -124,7 +124,7 @@ def wheel_momentum(b, z, plant):
     return total
 
 
-@kernel
+@inner
 def wheel_reaction(b, z, plant, inputs, out):
     """Torque of body b's wheels on it [N m], the motors' part of (3); their momentum's rate goes to `out`."""
     wheels = plant.wheels
@@ -140,7 +140,7 @@ def wheel_reaction(b, z, plant, inputs, out):
     return reaction
 
 
-@kernel
+@inner
 def rods_torque(t, b, z, q, field_b, dcm_ei, plant, out):
     """Torque of body b's hysteresis rods [N m], body axes; the rates of their inductions go to `out`."""
     rods, surroundings = plant.rods, plant.surroundings
@@ -162,7 +162,7 @@ def rods_torque(t, b, z, q, field_b, dcm_ei, plant, out):
     return cross(dipole, field_b)
 
 
-@kernel
+@inner
 def thruster_load(b, plant, inputs):
     """Force and torque of body b's thrusters [N, N m], body axes."""
     thrusters = plant.thrusters
@@ -175,7 +175,7 @@ def thruster_load(b, plant, inputs):
     return force, torque
 
 
-@kernel
+@inner
 def line_end(z, start, b, point_b):
     """Attachment point of a line on body b: offset from its centre, place and velocity, inertial axes."""
     base = TANGENT * b
@@ -185,7 +185,7 @@ def line_end(z, start, b, point_b):
     return add(three(z, base), offset_i), add(three(z, base + 3), swing_i)
 
 
-@kernel
+@inner
 def line_loads(z, start, plant, log, out):
     """Add force_i [N] and torque_b [N m] of all lines on every body to `out` (bodies, 6)."""
     lines = plant.lines
@@ -202,7 +202,7 @@ def line_loads(z, start, plant, log, out):
         impose(log, LINES, two, scale(-1.0, pull), torque2, out)
 
 
-@kernel
+@inner
 def impose(log, load, b, force_i, torque_b, out):
     """Add a load to those of body b, and to the log where one is kept."""
     for j in range(3):
@@ -222,7 +222,7 @@ def ask(loads, slot, t, state, parameters, reply):
     return answer.shape[0]
 
 
-@kernel
+@inner
 def user_loads(t, z, start, plant, loads, call, shared, log, out):
     """Add the user's loads to `out`; 0, or what one of them did wrong."""
     user = plant.user
@@ -253,7 +253,7 @@ def user_loads(t, z, start, plant, loads, call, shared, log, out):
     return 0
 
 
-@kernel
+@inner
 def note(log, load, b, force_i, torque_b):
     """Keep a load's force and torque, where a log (loads, bodies, 6) is kept."""
     if log.shape[0] > 0:
@@ -262,12 +262,12 @@ def note(log, load, b, force_i, torque_b):
             log[load, b, 3 + j] = torque_b[j]
 
 
-@kernel
-def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, hold, log, out):
+@inner
+def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, log, out):
     """Torque of the field on body b [N m], body axes."""
     bodies = plant.bodies
     r, omega = three(z, TANGENT * b), three(z, TANGENT * b + 9)
-    field_b = to_body(q, vec(frozen, b) if hold else field_at(r, dcm_ei, plant.surroundings))
+    field_b = to_body(q, vec(frozen, b) if frozen.shape[0] > 0 else field_at(r, dcm_ei, plant.surroundings))
     drive = cross(commanded_dipole(t, b, plant.torquers, inputs), field_b)
     note(log, TORQUERS, b, NOTHING, drive)
     still = dipole_torque(field_b, b, bodies)
@@ -282,7 +282,7 @@ def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, hold, log, out):
     return torque
 
 
-@kernel
+@inner
 def surface_loads(t, b, z, q, dcm_ei, plant, log):
     """Force_i [N] and torque_b [N m] of air and light on body b."""
     bodies, surroundings = plant.bodies, plant.surroundings
@@ -302,7 +302,7 @@ def surface_loads(t, b, z, q, dcm_ei, plant, log):
     return force, torque
 
 
-@kernel
+@inner
 def turning(b, z, torque, plant, inputs, log, out):
     """Euler's equation (3) of body b under a torque [N m], body axes, its wheels' part added: into `out`."""
     base = TANGENT * b
@@ -316,8 +316,8 @@ def turning(b, z, torque, plant, inputs, log, out):
     store(out, base + 9, euler_rate(omega, inertia, inverse, torque))
 
 
-@kernel
-def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, hold, outer, log, out):
+@inner
+def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, outer, log, out):
     """Rates (1) to (3) of body b; outer (bodies, 6): loads that come from other bodies or the user."""
     surroundings, bodies = plant.surroundings, plant.bodies
     base = TANGENT * b
@@ -348,17 +348,17 @@ def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, hold, outer, log, 
         note(log, GRADIENT, b, NOTHING, lever)
         torque = add(torque, lever)
     if plant.magnetic:
-        torque = add(torque, magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, hold, log, out))
+        torque = add(torque, magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, log, out))
     steady = add(vec(bodies.torque_b, b), to_body(q, vec(bodies.torque_i, b)))
     note(log, DISTURBANCE, b, NOTHING, steady)
     turning(b, z, add(torque, steady), plant, inputs, log, out)
 
 
-@kernel
-def plant_rates(t, z, start, plant, inputs, frozen, hold, loads, call, shared, log, out):
+@inner
+def plant_rates(t, z, start, plant, inputs, frozen, loads, call, shared, log, out):
     """Fill `out` with dz/dt at t; 0, or the number of what a user's load did wrong.
 
-    start (bodies, 4): attitudes at the step's start. frozen (bodies, 3): field to use where `hold` is set.
+    start (bodies, 4): attitudes at the step's start. frozen: field [T] to use, (bodies, 3); (0, 3): what it is here.
     """
     dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
     outer = shared.outer
@@ -375,5 +375,5 @@ def plant_rates(t, z, start, plant, inputs, frozen, hold, loads, call, shared, l
         if status != 0:
             return status
     for b in range(plant.bodies.mass.shape[0]):
-        body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, hold, outer, log, out)
+        body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, outer, log, out)
     return 0

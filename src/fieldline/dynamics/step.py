@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fieldline.compiled import kernel
+from fieldline.compiled import inner, kernel
 from fieldline.dynamics.parameters import STATE, TANGENT, Plant, state_size, tangent_size
 from fieldline.dynamics.rates import freeze_fields, plant_rates, store, three
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit
@@ -29,7 +29,7 @@ class Work(NamedTuple):
     scale: np.ndarray  # (n,) error allowed
     dense: np.ndarray  # (7, n) coefficients of the state within the step
     start: np.ndarray  # (bodies, 4) attitudes at the step's start
-    frozen: np.ndarray  # (bodies, 3) field in mid-step
+    frozen: np.ndarray  # (bodies, 3) field in mid-step, where it is taken once a step; else (0, 3)
     log: np.ndarray  # (0, bodies, 6), or (loads, bodies, 6) to keep every load
 
 
@@ -44,7 +44,7 @@ class Shared(NamedTuple):
     culprit: np.ndarray  # (2,) int64: the task or load at fault, and how many numbers it returned
 
 
-def new_work(plant: Plant, evaluations: int, loads: int = 0) -> Work:
+def new_work(plant: Plant, evaluations: int, *, once_a_step: bool = False, loads: int = 0) -> Work:
     """Arrays for a plant and a method of so many evaluations; `loads` rows of log."""
     n, bodies = tangent_size(plant), len(plant.bodies.mass)
     return Work(
@@ -55,7 +55,7 @@ def new_work(plant: Plant, evaluations: int, loads: int = 0) -> Work:
         scale=np.ones(n),
         dense=np.zeros((7, n)),
         start=np.zeros((bodies, 4)),
-        frozen=np.zeros((bodies, 3)),
+        frozen=np.zeros((bodies if once_a_step else 0, 3)),
         log=np.zeros((loads, bodies, 6)),
     )
 
@@ -72,7 +72,7 @@ def new_shared(plant: Plant) -> Shared:
     )
 
 
-@kernel
+@inner
 def lift(y, start, z):
     """State y as the stepper's z and the attitudes it starts from."""
     bodies = start.shape[0]
@@ -88,7 +88,7 @@ def lift(y, start, z):
         z[j] = y[j + bodies]
 
 
-@kernel
+@inner
 def settle(z, start, y):
     """The stepper's z as a state; equation (1)."""
     bodies = start.shape[0]
@@ -104,11 +104,11 @@ def settle(z, start, y):
         y[j + bodies] = z[j]
 
 
-@kernel
-def attempt(t, h, y, plant, inputs, hold, tableau, loads, call, shared, work):
+@inner
+def attempt(t, h, y, plant, inputs, tableau, loads, call, shared, work):
     """Stages of a step of length h from state y, leaving its end in work.z1; 0 or what a user's load did wrong."""
     lift(y, work.start, work.z)
-    if hold:
+    if work.frozen.shape[0] > 0:
         freeze_fields(t, h, y, plant, work.frozen)
     stages = tableau.b.shape[0]
     for s in range(stages):
@@ -120,7 +120,6 @@ def attempt(t, h, y, plant, inputs, hold, tableau, loads, call, shared, work):
             plant,
             inputs,
             work.frozen,
-            hold,
             loads,
             call,
             shared,
@@ -133,10 +132,17 @@ def attempt(t, h, y, plant, inputs, hold, tableau, loads, call, shared, work):
     return 0
 
 
-@kernel
-def closing_rates(t, h, plant, inputs, hold, loads, call, shared, work, row):
+@inner
+def closing_rates(t, h, plant, inputs, loads, call, shared, work, row):
     """Evaluate the right-hand side at the step's end, into row `row` of k."""
-    return plant_rates(t + h, work.z1, work.start, plant, inputs, work.frozen, hold, loads, call, shared, work.log, work.k[row])
+    return plant_rates(t + h, work.z1, work.start, plant, inputs, work.frozen, loads, call, shared, work.log, work.k[row])
+
+
+@kernel
+def evaluate(t, y, plant, inputs, loads, call, shared, work, out):
+    """Fill `out` with dz/dt at state y, and work.log where it has rows; 0 or what a user's load did wrong."""
+    lift(y, work.start, work.z)
+    return plant_rates(t, work.z, work.start, plant, inputs, work.frozen, loads, call, shared, work.log, out)
 
 
 def rates_of(t: float, y, plant: Plant, inputs, loads, call, shared: Shared) -> tuple[np.ndarray, np.ndarray]:
@@ -145,8 +151,7 @@ def rates_of(t: float, y, plant: Plant, inputs, loads, call, shared: Shared) -> 
 
     if len(y) != state_size(plant):
         raise ValueError(f"the plant's state has {state_size(plant)} numbers; got {len(y)}")
-    work = new_work(plant, 1, len(LOADS))
-    lift(np.asarray(y, dtype=float), work.start, work.z)
+    work = new_work(plant, 1, loads=len(LOADS))
     out = np.zeros_like(work.z)
-    plant_rates(t, work.z, work.start, plant, inputs, work.frozen, False, loads, call, shared, work.log, out)
+    evaluate(float(t), np.array(y, dtype=float), plant, inputs, loads, call, shared, work, out)
     return out, work.log

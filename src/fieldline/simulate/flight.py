@@ -66,7 +66,9 @@ class Flight:
         self.events = events_of(scenario, user.events)
         self.record = made.record_of(scenario, self.plant, self.schedule, self.duration_s)
         self.clock = made.clock_of(scenario.integrator.step_s)
-        self.work = new_work(self.plant, self.stepping.tableau.evaluations)
+        self.work = new_work(
+            self.plant, self.stepping.tableau.evaluations, once_a_step=scenario.integrator.field_update == "step"
+        )
         self.loads = user.slots.filled()
         self.run = Run(
             self.y, np.empty_like(self.y), self.plant, self.inputs, self.schedule, self.stepping, self.sensors, self.boards,
@@ -115,7 +117,6 @@ def stepping_of(scenario, plant, duration_s: float) -> Stepping:
     return Stepping(
         tableau=DOP853 if adaptive else RK4,
         adaptive=adaptive,
-        hold=integrator.field_update == "step",
         step=(integrator.step_max_s or 1e9) if adaptive else integrator.step_s,
         relative=integrator.relative_tolerance,
         absolute=absolute,

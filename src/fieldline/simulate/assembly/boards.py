@@ -165,6 +165,7 @@ def record_of(scenario, plant: Plant, schedule: loop.Schedule, duration_s: float
         start=np.zeros((bodies, 4)),
         z=np.zeros(tangent_size(plant)),
         rate=np.zeros(tangent_size(plant)),
+        unfrozen=np.zeros((0, 3)),
     )
 
 

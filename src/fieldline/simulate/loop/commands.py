@@ -12,11 +12,11 @@ from __future__ import annotations
 
 from math import exp
 
-from fieldline.compiled import kernel
+from fieldline.compiled import inner
 from fieldline.simulate.loop.records import NEVER, SAME_TIME_S
 
 
-@kernel
+@inner
 def limited(wanted, limit, quantum):
     """One actuator's command; equation (1)."""
     if quantum > 0.0:
@@ -24,7 +24,7 @@ def limited(wanted, limit, quantum):
     return min(max(wanted, -limit), limit)
 
 
-@kernel
+@inner
 def allocate(reply, count, task, tasks, actuators, out):
     """What law `task` wants, as commands of its body's actuators into `out`; others keep NEVER. Returns numbers used."""
     body = tasks.body[task]
@@ -54,7 +54,7 @@ def allocate(reply, count, task, tasks, actuators, out):
     return at
 
 
-@kernel
+@inner
 def send(t, task, tasks, commands):
     """Put commands (actuators,) in the queue of a task; the oldest place is taken if it is full."""
     depth = tasks.pending.shape[1]
@@ -68,7 +68,7 @@ def send(t, task, tasks, commands):
         tasks.waiting[task, place, k] = commands[k]
 
 
-@kernel
+@inner
 def next_command(tasks):
     """When the next command takes effect [s], NEVER where none waits."""
     soonest = NEVER
@@ -78,7 +78,7 @@ def next_command(tasks):
     return soonest
 
 
-@kernel
+@inner
 def drive(t, k, value, period, run):
     """Let actuator k do `value` from t on; a thruster for that part of `period`."""
     inputs, actuators = run.inputs, run.actuators
@@ -103,7 +103,7 @@ def drive(t, k, value, period, run):
             actuators.until[thruster] = t + firing
 
 
-@kernel
+@inner
 def cease_fire(t, inputs, actuators):
     """End the firings whose time is up."""
     for k in range(actuators.until.shape[0]):
@@ -112,7 +112,7 @@ def cease_fire(t, inputs, actuators):
             actuators.until[k] = NEVER
 
 
-@kernel
+@inner
 def next_ceasing(actuators):
     """When the next firing ends [s]."""
     soonest = NEVER
@@ -121,7 +121,7 @@ def next_ceasing(actuators):
     return soonest
 
 
-@kernel
+@inner
 def obey(t, run):
     """Let every command that is due take effect."""
     tasks, actuators = run.tasks, run.actuators
@@ -139,7 +139,7 @@ def obey(t, run):
                     drive(t, k, value, tasks.period[i], run)
 
 
-@kernel
+@inner
 def switch_torquers(t, body, off, run):
     """Duty cycle: let the torquers of a body rest, or do what was wanted last."""
     actuators = run.actuators

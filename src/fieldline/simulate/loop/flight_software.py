@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import nan
 
-from fieldline.compiled import counting, kernel
+from fieldline.compiled import counting, inner
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import three
 from fieldline.environment.ephemeris import dcm_ei_kernel
@@ -23,7 +23,7 @@ KNOWLEDGE = 7  # numbers of an estimator's answer
 SILENT, ANSWERED = 1, 2  # an estimator's last call
 
 
-@kernel
+@inner
 def measurement_of(boards, b):
     """Row b as what a law sees: views, not copies."""
     sun = boards.sun_sensor[b]
@@ -44,7 +44,7 @@ def measurement_of(boards, b):
     )
 
 
-@kernel
+@inner
 def refresh(t, b, run):
     """What is known at any time: commands in effect, orbit where no receiver reads it, wheels' speeds, reference field."""
     y, plant, sensors, boards, actuators = run.y, run.plant, run.sensors, run.boards, run.actuators
@@ -73,7 +73,7 @@ def refresh(t, b, run):
             boards.field_i[b, j] = field_i[j] + uniform[j]
 
 
-@kernel
+@inner
 def believe(reply, b, boards):
     """Take an estimator's answer as what is known of attitude and rate."""
     for j in range(4):
@@ -84,7 +84,7 @@ def believe(reply, b, boards):
     boards.valid[b, RATE] = 1.0
 
 
-@kernel
+@inner
 def withdraw(b, boards):
     """An estimator that had an answer has none any more."""
     boards.q_bi[b] = nan
@@ -93,7 +93,7 @@ def withdraw(b, boards):
     boards.valid[b, RATE] = 0.0
 
 
-@kernel
+@inner
 def all_finite(values, count):
     """Are the first `count` numbers finite?"""
     for j in range(count):
@@ -111,7 +111,7 @@ def ask(laws, slot, t, measurement, memory, params, reply):
     return answer.shape[0]
 
 
-@kernel
+@inner
 def run_task(t, i, run, laws, memories, parameters, call):
     """Run task i; 0 or the outcome that ends the run, with the culprit noted."""
     boards, tasks, shared = run.boards, run.tasks, run.shared

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import ceil
 
-from fieldline.compiled import kernel
+from fieldline.compiled import inner, kernel
 from fieldline.dynamics.loads.magnetic import torquer_moment
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import NOT_FINITE, RAISED, field_at, plant_rates, three
@@ -35,7 +35,7 @@ COARSEST_TURN = 1.0  # [rad] of a fixed step: beyond it the wobble of a body is 
 SHORTEST = 1e-9  # [s] of an adaptive step
 
 
-@kernel
+@inner
 def load_outcome(status):
     """The outcome of what a user's load did wrong."""
     if status == RAISED:
@@ -43,7 +43,7 @@ def load_outcome(status):
     return LOAD_NOT_FINITE if status == NOT_FINITE else LOAD_SHAPE
 
 
-@kernel
+@inner
 def next_time(run):
     """When anything is due next that the plant must be stepped to [s]; outputs bind fixed steps only."""
     schedule, stepping, tasks, actuators = run.schedule, run.stepping, run.tasks, run.actuators
@@ -54,7 +54,7 @@ def next_time(run):
     return soonest
 
 
-@kernel
+@inner
 def write_row(t, y, run, loads, call):
     """Keep the state and what goes with it."""
     plant, inputs, boards, record, clock = run.plant, run.inputs, run.boards, run.record, run.clock
@@ -86,10 +86,10 @@ def write_row(t, y, run, loads, call):
     if record.loads.shape[0] > 0:
         lift(y, record.start, record.z)
         log = record.loads[row]
-        plant_rates(t, record.z, record.start, plant, inputs, run.work.frozen, False, loads, call, run.shared, log, record.rate)
+        plant_rates(t, record.z, record.start, plant, inputs, run.record.unfrozen, loads, call, run.shared, log, record.rate)
 
 
-@kernel
+@inner
 def do_due(t, run, laws, memories, parameters, loads, call, rng):
     """Everything that is due at t; 0 or the outcome that ends the run."""
     schedule = run.schedule
@@ -115,7 +115,7 @@ def do_due(t, run, laws, memories, parameters, loads, call, rng):
     return 0
 
 
-@kernel
+@inner
 def fixed_length(t, due, run):
     """Length of the next fixed step [s], negative where it is too long for a body's rate."""
     y, plant, stepping = run.y, run.plant, run.stepping
@@ -127,7 +127,7 @@ def fixed_length(t, due, run):
     return h
 
 
-@kernel
+@inner
 def sound(t, y, plant, stepping):
     """0, or the outcome that a state without meaning has."""
     for j in range(y.shape[0]):
@@ -139,7 +139,7 @@ def sound(t, y, plant, stepping):
     return 0
 
 
-@kernel
+@inner
 def interpolated_rows(t, h, last, ready, run, loads, call):
     """Write the outputs of an adaptive step that fall in (t, last]."""
     schedule = run.schedule
@@ -157,7 +157,7 @@ def interpolated_rows(t, h, last, ready, run, loads, call):
             due = schedule.phase[j] + schedule.count[j] * schedule.period[j]
 
 
-@kernel
+@inner
 def advance(t, due, run, loads, call):
     """One step of the plant towards `due`; (outcome, time reached)."""
     plant, stepping, clock, shared, work = run.plant, run.stepping, run.clock, run.shared, run.work
@@ -169,7 +169,7 @@ def advance(t, due, run, loads, call):
             return COARSE, t
     refused = False
     while True:
-        status = attempt(t, h, run.y, plant, run.inputs, stepping.hold, stepping.tableau, loads, call, shared, work)
+        status = attempt(t, h, run.y, plant, run.inputs, stepping.tableau, loads, call, shared, work)
         if status != 0:
             return load_outcome(status), t
         if not stepping.adaptive:

@@ -49,7 +49,6 @@ class Stepping(NamedTuple):
 
     tableau: Tableau
     adaptive: bool
-    hold: bool  # the field once a step
     step: float  # [s] the step, or the largest one
     relative: float
     absolute: np.ndarray  # (n,) allowed error of each number of z
@@ -153,6 +152,7 @@ class Record(NamedTuple):
     start: np.ndarray  # (bodies, 4), z and rate (n,): scratch of the log of loads
     z: np.ndarray
     rate: np.ndarray
+    unfrozen: np.ndarray  # (0, 3): the field as it is
 
 
 class Clock(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fieldline.compiled import kernel
+from fieldline.compiled import inner
 from fieldline.dynamics.loads.magnetic import commanded_dipole
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import field_at, three
@@ -19,7 +19,7 @@ from fieldline.simulate.loop.flight_software import measurement_of
 from fieldline.simulate.loop.records import GYRO, MAGNETOMETER, NAVIGATION, STAR_TRACKER, SUN_SENSOR
 
 
-@kernel
+@inner
 def keep(t, row, values, record, clock):
     """Store a reading with the row of the schedule that it comes from."""
     place = clock.samples[0]
@@ -31,7 +31,7 @@ def keep(t, row, values, record, clock):
             record.samples[place, 2 + j] = values[j]
 
 
-@kernel
+@inner
 def sample(t, row, kind, b, run, rng):
     """Read one sensor of body b."""
     y, plant, sensors, boards, record, clock = run.y, run.plant, run.sensors, run.boards, run.record, run.clock

@@ -8,7 +8,7 @@ user:      the first number that the user's function returns for (t, state, para
 
 from __future__ import annotations
 
-from fieldline.compiled import kernel
+from fieldline.compiled import inner
 from fieldline.dynamics.parameters import PLAIN_LOAD, STATE
 from fieldline.dynamics.rates import ask, plant_rates, three
 from fieldline.dynamics.step import closing_rates, settle
@@ -25,14 +25,14 @@ from fieldline.simulate.loop.records import ALTITUDE, ECLIPSE, RATE
 SHARPNESS = 1e-10  # of a step: how closely a crossing is found
 
 
-@kernel
+@inner
 def height_of(t, b, y, plant):
     """Height over the ellipsoid [m]."""
     dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
     return geodetic_kernel(matvec(dcm_ei, three(y, STATE * b)))[2]
 
 
-@kernel
+@inner
 def quantity(t, k, y, run, loads, call):
     """What event k watches, at state y; NaN where the user's function failed."""
     plant, events, shared = run.plant, run.events, run.shared
@@ -53,13 +53,12 @@ def quantity(t, k, y, run, loads, call):
     return shared.reply[0] if count > 0 else float("nan")
 
 
-@kernel
+@inner
 def interpolant(t, h, run, loads, call):
     """Coefficients of the state within the step just taken, into work.dense."""
     plant, inputs, stepping, shared, work = run.plant, run.inputs, run.stepping, run.shared, run.work
     stages = stepping.tableau.b.shape[0]
-    hold = stepping.hold
-    closing_rates(t, h, plant, inputs, hold, loads, call, shared, work, stages)
+    closing_rates(t, h, plant, inputs, loads, call, shared, work, stages)
     extra = stepping.tableau.c_extra.shape[0]
     if extra == 0:
         hermite_coefficients(work.z, work.z1, work.k[0], work.k[stages], h, work.dense)
@@ -68,18 +67,18 @@ def interpolant(t, h, run, loads, call):
         row = stages + 1 + x
         combine(work.z, h, work.k, stepping.tableau.a_extra[x], row, work.stage)
         at = t + stepping.tableau.c_extra[x] * h
-        plant_rates(at, work.stage, work.start, plant, inputs, work.frozen, hold, loads, call, shared, work.log, work.k[row])
+        plant_rates(at, work.stage, work.start, plant, inputs, work.frozen, loads, call, shared, work.log, work.k[row])
     dense_coefficients(work.z, work.z1, h, work.k, stepping.tableau.d, work.dense)
 
 
-@kernel
+@inner
 def within(theta, work, y):
     """State at the fraction theta of the step, into y."""
     dense_value(theta, work.dense, work.z, work.stage)
     settle(work.stage, work.start, y)
 
 
-@kernel
+@inner
 def crossing(t, h, k, before, after, run, loads, call):
     """Fraction of the step at which event k happens."""
     a, fa, b, fb = 0.0, before, 1.0, after
@@ -92,7 +91,7 @@ def crossing(t, h, k, before, after, run, loads, call):
     return b
 
 
-@kernel
+@inner
 def watch(t, h, ready, run, loads, call):
     """Look for crossings in the step from t to t + h, whose end is the state now; keep them.
 
