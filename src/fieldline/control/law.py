@@ -69,6 +69,7 @@ class Law:
     commands: tuple[str, ...]
     doc: str
     pack: Callable[[Mapping, DesignContext], np.ndarray]
+    reference: bool = False  # whether it reads measurement.field_i, which costs a field model at every call
 
 
 def complete(law: str, parameters: Mapping[str, Parameter], table: Mapping) -> dict:

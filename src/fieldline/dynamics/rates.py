@@ -7,7 +7,7 @@
 (2): the rotation vector sigma since the step's start, q_bi = q0 exp(sigma / 2); c = 1/12 near zero and
 (1 - (|sigma|/2) cot(|sigma|/2)) / |sigma|^2 exactly. (3): h is the whole axial momentum of a wheel, its share of the
 body's turn included, so that I lacks the wheels' spin inertia and I omega + sum a h is what is conserved; u is the
-motor's torque on the wheel. A wheel at its largest momentum takes no more torque in that direction.
+motor's torque on the wheel. That a full wheel takes no more is the loop's affair: its motor rests from then on.
 
 The loads' equations are in `fieldline.dynamics.loads`, gravity and field in `fieldline.environment`.
 Sources: Munthe-Kaas (1998), BIT 38:92 for (2); Markley and Crassidis (2014), s. 3.3 for (3).
@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from math import sqrt, tan
 
-from fieldline.compiled import counting, inner, kernel
+from fieldline.compiled import counting, inner, kernel, merged
 from fieldline.dynamics.loads.hysteresis import MU0, induction_rate
 from fieldline.dynamics.loads.line import line_pull
 from fieldline.dynamics.loads.magnetic import commanded_dipole, dipole_torque, eddy_torque, row9
@@ -125,16 +125,14 @@ def wheel_momentum(b, z, plant):
 
 
 @inner
-def wheel_reaction(b, z, plant, inputs, out):
+def wheel_reaction(b, plant, inputs, out):
     """Torque of body b's wheels on it [N m], the motors' part of (3); their momentum's rate goes to `out`."""
     wheels = plant.wheels
     base = TANGENT * plant.bodies.mass.shape[0]
     reaction = NOTHING
     for k in range(wheels.body.shape[0]):
         if wheels.body[k] == b:
-            torque, momentum = inputs.wheel_torque[k], z[base + k]
-            if abs(momentum) >= wheels.momentum_max[k] and torque * momentum > 0.0:
-                torque = 0.0
+            torque = inputs.wheel_torque[k]
             out[base + k] = torque
             reaction = axpy(-torque, vec(wheels.axis, k), reaction)
     return reaction
@@ -262,7 +260,7 @@ def note(log, load, b, force_i, torque_b):
             log[load, b, 3 + j] = torque_b[j]
 
 
-@inner
+@merged
 def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, log, out):
     """Torque of the field on body b [N m], body axes."""
     bodies = plant.bodies
@@ -282,7 +280,7 @@ def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, log, out):
     return torque
 
 
-@inner
+@merged
 def surface_loads(t, b, z, q, dcm_ei, plant, log):
     """Force_i [N] and torque_b [N m] of air and light on body b."""
     bodies, surroundings = plant.bodies, plant.surroundings
@@ -302,13 +300,13 @@ def surface_loads(t, b, z, q, dcm_ei, plant, log):
     return force, torque
 
 
-@inner
+@merged
 def turning(b, z, torque, plant, inputs, log, out):
     """Euler's equation (3) of body b under a torque [N m], body axes, its wheels' part added: into `out`."""
     base = TANGENT * b
     sigma, omega = three(z, base + 6), three(z, base + 9)
     if plant.wheels.body.shape[0] > 0:
-        motors = wheel_reaction(b, z, plant, inputs, out)
+        motors = wheel_reaction(b, plant, inputs, out)
         note(log, WHEELS, b, NOTHING, motors)
         torque = sub(add(torque, motors), cross(omega, wheel_momentum(b, z, plant)))
     inertia, inverse = row9(plant.bodies.inertia, b), row9(plant.bodies.inertia_inv, b)
@@ -316,7 +314,7 @@ def turning(b, z, torque, plant, inputs, log, out):
     store(out, base + 9, euler_rate(omega, inertia, inverse, torque))
 
 
-@inner
+@merged
 def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, outer, log, out):
     """Rates (1) to (3) of body b; outer (bodies, 6): loads that come from other bodies or the user."""
     surroundings, bodies = plant.surroundings, plant.bodies

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fieldline.compiled import inner, kernel
+from fieldline.compiled import inner, kernel, merged
 from fieldline.dynamics.parameters import STATE, TANGENT, Plant, state_size, tangent_size
 from fieldline.dynamics.rates import freeze_fields, plant_rates, store, three
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit
@@ -104,7 +104,7 @@ def settle(z, start, y):
         y[j + bodies] = z[j]
 
 
-@inner
+@merged
 def attempt(t, h, y, plant, inputs, tableau, loads, call, shared, work):
     """Stages of a step of length h from state y, leaving its end in work.z1; 0 or what a user's load did wrong."""
     lift(y, work.start, work.z)

@@ -37,7 +37,7 @@ class Basis(NamedTuple):
     recursion: np.ndarray  # (2 L,) alpha, beta of each (m, n), n running fastest
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def synthesis_kernel(r_e, basis, table):
     """B [T] at r_e [m] (tuple, outside the origin) of a flat table (6 L,) made by `field_table`: equations (2) to (4)."""
     ratio = basis.radius_m / dot(r_e, r_e)

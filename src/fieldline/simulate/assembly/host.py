@@ -102,7 +102,9 @@ class Host:
         self._reply, self._replies = shared.reply, shared.replies
 
     def _call(self, which: int, t: float) -> int:
-        """Called from compiled code; whatever happens, it returns."""
+        """Called from compiled code; whatever happens, it returns. After an error it calls nothing any more."""
+        if self.error is not None:
+            return 1
         try:
             answer = self.functions[which](t)
             if answer is None:

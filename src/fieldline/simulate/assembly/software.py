@@ -31,6 +31,7 @@ class Task:
     commands: tuple[str, ...]
     memory: np.ndarray
     params: np.ndarray
+    reference: bool = True  # whether it is given the on-board model's field
     settings: dict = field(default_factory=dict)
 
 
@@ -80,6 +81,7 @@ def _task(scenario, k: int, design) -> Task:
         commands=known.commands,
         memory=np.zeros(known.memory),
         params=params,
+        reference=known.reference,
     )
 
 
@@ -102,6 +104,7 @@ def tasks_of(scenario, software: list[Task], actuators: loop.Actuators) -> loop.
     return loop.Tasks(
         body=np.array([task.body for task in software], dtype=np.int64),
         slot=np.full(len(software), -1, dtype=np.int64),
+        reference=np.array([task.reference for task in software], dtype=np.int64),
         estimator=np.array([record.role == "estimator" for record in records], dtype=np.int64),
         groups=groups,
         replies=np.array([replies_of(scenario, task) for task in software], dtype=np.int64),

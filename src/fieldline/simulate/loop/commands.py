@@ -5,7 +5,8 @@
 w: the wanted dipole of a body's torquers, or the wanted torque of its wheels on it; P: the pseudo-inverse of their axes,
 so the command is the least one that gives w where the axes span it. A wheel gives the body the opposite of what its
 motor gives the wheel: the sign is in P. A thruster told 0 to 1 fires at full thrust for that part of the law's period,
-not at all where that is less than its shortest firing.
+not at all where that is less than its shortest firing. Under a constant torque a wheel's momentum is linear in time, so the
+time at which it is full is known beforehand, and its motor rests from then until it is told to go back.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 from math import exp
 
 from fieldline.compiled import inner
+from fieldline.dynamics.parameters import STATE
 from fieldline.simulate.loop.records import NEVER, SAME_TIME_S
 
 
@@ -122,6 +124,34 @@ def next_ceasing(actuators):
 
 
 @inner
+def time_to_fill(k, run):
+    """Seconds after which wheel k is full at the torque in effect; NEVER for one that rests."""
+    torque = run.inputs.wheel_torque[k]
+    if torque == 0.0:
+        return NEVER
+    full = run.plant.wheels.momentum_max[k]
+    momentum = run.y[STATE * run.plant.bodies.mass.shape[0] + k]
+    return ((full if torque > 0.0 else -full) - momentum) / torque
+
+
+@inner
+def next_filling(t, run):
+    """When the next wheel is full [s]."""
+    soonest = NEVER
+    for k in range(run.inputs.wheel_torque.shape[0]):
+        soonest = min(soonest, t + time_to_fill(k, run))
+    return soonest
+
+
+@inner
+def rest_full_wheels(run):
+    """Stop the motors that would press a full wheel further."""
+    for k in range(run.inputs.wheel_torque.shape[0]):
+        if time_to_fill(k, run) <= SAME_TIME_S:
+            run.inputs.wheel_torque[k] = 0.0
+
+
+@inner
 def obey(t, run):
     """Let every command that is due take effect."""
     tasks, actuators = run.tasks, run.actuators
@@ -137,6 +167,7 @@ def obey(t, run):
                 actuators.wanted[k] = value
                 if not (k < actuators.torquers and actuators.off[actuators.body[k]] != 0):
                     drive(t, k, value, tasks.period[i], run)
+    rest_full_wheels(run)
 
 
 @inner

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import nan
 
-from fieldline.compiled import counting, inner
+from fieldline.compiled import counting, inner, merged
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import three
 from fieldline.environment.ephemeris import dcm_ei_kernel
@@ -44,8 +44,8 @@ def measurement_of(boards, b):
     )
 
 
-@inner
-def refresh(t, b, run):
+@merged
+def refresh(t, b, reference, run):
     """What is known at any time: commands in effect, orbit where no receiver reads it, wheels' speeds, reference field."""
     y, plant, sensors, boards, actuators = run.y, run.plant, run.sensors, run.boards, run.actuators
     boards.dipole_b[b] = 0.0
@@ -64,7 +64,7 @@ def refresh(t, b, run):
         if plant.wheels.body[k] == b:
             boards.wheel_momentum[b, at] = y[base + k]
             at += 1
-    if boards.valid[b, ORBIT] != 0.0:
+    if reference and boards.valid[b, ORBIT] != 0.0:
         dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
         place = (boards.position_i[b, 0], boards.position_i[b, 1], boards.position_i[b, 2])
         field_i = matvec(transpose(dcm_ei), field_kernel(matvec(dcm_ei, place), sensors.field))
@@ -111,12 +111,12 @@ def ask(laws, slot, t, measurement, memory, params, reply):
     return answer.shape[0]
 
 
-@inner
+@merged
 def run_task(t, i, run, laws, memories, parameters, call):
     """Run task i; 0 or the outcome that ends the run, with the culprit noted."""
     boards, tasks, shared = run.boards, run.tasks, run.shared
     b = tasks.body[i]
-    refresh(t, b, run)
+    refresh(t, b, tasks.reference[i] != 0, run)
     shared.culprit[0] = i
     tasks.runs[i] += 1
     slot = tasks.slot[i]

@@ -13,26 +13,29 @@ from __future__ import annotations
 
 from math import ceil
 
-from fieldline.compiled import inner, kernel
+from fieldline.compiled import inner, kernel, merged
+from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M
 from fieldline.dynamics.loads.magnetic import torquer_moment
 from fieldline.dynamics.parameters import STATE
-from fieldline.dynamics.rates import NOT_FINITE, RAISED, field_at, plant_rates, three
+from fieldline.dynamics.rates import FINITE, NOT_FINITE, RAISED, field_at, plant_rates, three
 from fieldline.dynamics.step import attempt, lift, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
 from fieldline.frames.vectors import norm, put
 from fieldline.integrate.steps import error_norm, error_scale, next_step
-from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, obey, switch_torquers
+from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, next_filling, obey, switch_torquers
 from fieldline.simulate.loop.flight_software import run_task
 from fieldline.simulate.loop.records import OUTPUT, SAME_TIME_S, TASK, TORQUE_OFF, TORQUE_ON, Outcome
 from fieldline.simulate.loop.sampling import sample
-from fieldline.simulate.loop.watching import height_of, interpolant, quantity, watch, within
+from fieldline.simulate.loop.watching import GOES_ON, height_of, interpolant, quantity, watch, within
 
 PAUSED, DONE, STOPPED = int(Outcome.PAUSED), int(Outcome.DONE), int(Outcome.STOPPED)
 BROKEN, GROUND, COARSE, UNDERFLOW = int(Outcome.NOT_FINITE), int(Outcome.GROUND), int(Outcome.COARSE), int(Outcome.UNDERFLOW)
+EVENT_FAILED = int(Outcome.EVENT_FAILED)
 LOAD_RAISED, LOAD_SHAPE, LOAD_NOT_FINITE = int(Outcome.LOAD_RAISED), int(Outcome.LOAD_SHAPE), int(Outcome.LOAD_NOT_FINITE)
 COARSEST_TURN = 1.0  # [rad] of a fixed step: beyond it the wobble of a body is no longer followed
 SHORTEST = 1e-9  # [s] of an adaptive step
+SAFE_RADIUS_M = EARTH_EQUATORIAL_RADIUS_M + 100e3  # above any height at which a run ends
 
 
 @inner
@@ -44,10 +47,10 @@ def load_outcome(status):
 
 
 @inner
-def next_time(run):
+def next_time(t, run):
     """When anything is due next that the plant must be stepped to [s]; outputs bind fixed steps only."""
     schedule, stepping, tasks, actuators = run.schedule, run.stepping, run.tasks, run.actuators
-    soonest = min(stepping.end, min(next_command(tasks), next_ceasing(actuators)))
+    soonest = min(min(stepping.end, next_filling(t, run)), min(next_command(tasks), next_ceasing(actuators)))
     for j in range(schedule.kind.shape[0]):
         if not (stepping.adaptive and schedule.kind[j] == OUTPUT):
             soonest = min(soonest, schedule.phase[j] + schedule.count[j] * schedule.period[j])
@@ -89,7 +92,7 @@ def write_row(t, y, run, loads, call):
         plant_rates(t, record.z, record.start, plant, inputs, run.record.unfrozen, loads, call, run.shared, log, record.rate)
 
 
-@inner
+@merged
 def do_due(t, run, laws, memories, parameters, loads, call, rng):
     """Everything that is due at t; 0 or the outcome that ends the run."""
     schedule = run.schedule
@@ -104,6 +107,7 @@ def do_due(t, run, laws, memories, parameters, loads, call, rng):
                 return outcome
         elif kind == OUTPUT:
             if not run.stepping.adaptive or t == 0.0:
+                cease_fire(t, run.inputs, run.actuators)
                 obey(t, run)
                 write_row(t, run.y, run, loads, call)
         elif kind == TORQUE_OFF or kind == TORQUE_ON:
@@ -134,6 +138,8 @@ def sound(t, y, plant, stepping):
         if not abs(y[j]) < 1e300:
             return BROKEN
     for b in range(plant.bodies.mass.shape[0]):
+        if norm(three(y, STATE * b)) > SAFE_RADIUS_M:
+            continue
         if height_of(t, b, y, plant) < stepping.floor:
             return GROUND
     return 0
@@ -157,7 +163,7 @@ def interpolated_rows(t, h, last, ready, run, loads, call):
             due = schedule.phase[j] + schedule.count[j] * schedule.period[j]
 
 
-@inner
+@merged
 def advance(t, due, run, loads, call):
     """One step of the plant towards `due`; (outcome, time reached)."""
     plant, stepping, clock, shared, work = run.plant, run.stepping, run.clock, run.shared, run.work
@@ -195,17 +201,19 @@ def advance(t, due, run, loads, call):
     if outcome == BROKEN:
         return outcome, reached
     ready = False
-    part = 1.0
+    part = GOES_ON
     if run.events.kind.shape[0] > 0:
         part = watch(t, h, ready, run, loads, call)
-    if part < 1.0:
+    if part < 0.0:
+        return EVENT_FAILED, reached
+    if part <= 1.0:
         interpolant(t, h, run, loads, call)
         ready = True
-        reached = t + part * h
+        reached = min(t + part * h, reached)
         outcome = STOPPED
     if stepping.adaptive:
         interpolated_rows(t, h, reached, ready, run, loads, call)
-    if part < 1.0:
+    if part <= 1.0:
         within(part, work, run.y)
     return outcome, reached
 
@@ -218,13 +226,16 @@ def fly(budget, run, laws, memories, parameters, loads, call, rng):
     if clock.steps[0] == 0 and clock.rows[0] == 0:
         for k in range(events.kind.shape[0]):
             events.value[k] = quantity(t, k, run.y, run, loads, call)
+            if not abs(events.value[k]) < FINITE:
+                run.shared.culprit[0] = k
+                return EVENT_FAILED
     for _ in range(budget):
         outcome = do_due(t, run, laws, memories, parameters, loads, call, rng)
         if outcome != 0:
             return outcome
         if t >= stepping.end - SAME_TIME_S:
             return DONE
-        outcome, t = advance(t, next_time(run), run, loads, call)
+        outcome, t = advance(t, next_time(t, run), run, loads, call)
         clock.t[0] = t
         if outcome != 0:
             return outcome

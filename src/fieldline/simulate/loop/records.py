@@ -42,6 +42,7 @@ class Outcome(IntEnum):
     LOAD_RAISED = 10
     LOAD_SHAPE = 11
     LOAD_NOT_FINITE = 12
+    EVENT_FAILED = 13
 
 
 class Stepping(NamedTuple):
@@ -98,6 +99,7 @@ class Tasks(NamedTuple):
 
     body: np.ndarray  # (n,) int64
     slot: np.ndarray  # (n,) int64: a compiled law's place, or -1: plain Python
+    reference: np.ndarray  # (n,) int64: whether it is given the reference field
     estimator: np.ndarray  # (n,) int64: 0 for a controller, 1 for an estimator, 2 for one whose last call had an answer
     groups: np.ndarray  # (n, 3) int64: whether it commands dipole, wheel torque, thrust
     replies: np.ndarray  # (n,) int64: how many numbers it must return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fieldline.compiled import inner
+from fieldline.compiled import inner, merged
 from fieldline.dynamics.loads.magnetic import commanded_dipole
 from fieldline.dynamics.parameters import STATE
 from fieldline.dynamics.rates import field_at, three
@@ -31,7 +31,7 @@ def keep(t, row, values, record, clock):
             record.samples[place, 2 + j] = values[j]
 
 
-@inner
+@merged
 def sample(t, row, kind, b, run, rng):
     """Read one sensor of body b."""
     y, plant, sensors, boards, record, clock = run.y, run.plant, run.sensors, run.boards, run.record, run.clock

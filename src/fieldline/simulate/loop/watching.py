@@ -8,9 +8,11 @@ user:      the first number that the user's function returns for (t, state, para
 
 from __future__ import annotations
 
+from math import nan
+
 from fieldline.compiled import inner
 from fieldline.dynamics.parameters import PLAIN_LOAD, STATE
-from fieldline.dynamics.rates import ask, plant_rates, three
+from fieldline.dynamics.rates import FINITE, ask, plant_rates, three
 from fieldline.dynamics.step import closing_rates, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
@@ -23,6 +25,7 @@ from fieldline.integrate.steps import combine
 from fieldline.simulate.loop.records import ALTITUDE, ECLIPSE, RATE
 
 SHARPNESS = 1e-10  # of a step: how closely a crossing is found
+GOES_ON, FAILED = 2.0, -1.0  # in place of the fraction of a step at which a run stops
 
 
 @inner
@@ -47,10 +50,12 @@ def quantity(t, k, y, run, loads, call):
         shared.state[j] = y[STATE * b + j]
     slot = events.slot[k]
     if slot >= PLAIN_LOAD:
-        return shared.reply[0] if call(slot, t) == 0 else float("nan")
-    parameters = events.parameters[events.first[k] : events.first[k + 1]]
-    count = ask(loads, slot, t, shared.state, parameters, shared.reply)
-    return shared.reply[0] if count > 0 else float("nan")
+        if call(slot, t) != 0:
+            return nan
+    else:
+        parameters = events.parameters[events.first[k] : events.first[k + 1]]
+        shared.replies[0] = ask(loads, slot, t, shared.state, parameters, shared.reply)
+    return shared.reply[0] if shared.replies[0] > 0 else nan
 
 
 @inner
@@ -80,13 +85,16 @@ def within(theta, work, y):
 
 @inner
 def crossing(t, h, k, before, after, run, loads, call):
-    """Fraction of the step at which event k happens."""
+    """Fraction of the step at which event k happens; FAILED where its quantity has no value."""
     a, fa, b, fb = 0.0, before, 1.0, after
     left = evaluations(b - a, SHARPNESS)
     while b - a > SHARPNESS and left > 0:
         x = next_guess(a, fa, b, fb, left, SHARPNESS)
         within(x, run.work, run.scratch)
-        a, fa, b, fb = narrow(a, fa, b, fb, x, quantity(t + x * h, k, run.scratch, run, loads, call))
+        value = quantity(t + x * h, k, run.scratch, run, loads, call)
+        if not abs(value) < FINITE:
+            return FAILED
+        a, fa, b, fb = narrow(a, fa, b, fb, x, value)
         left -= 1
     return b
 
@@ -95,12 +103,16 @@ def crossing(t, h, k, before, after, run, loads, call):
 def watch(t, h, ready, run, loads, call):
     """Look for crossings in the step from t to t + h, whose end is the state now; keep them.
 
-    Returns the fraction of the step at which the run stops, 1 where it goes on. `ready`: the interpolant is made.
+    Returns the fraction of the step at which the run stops, which may be its end; GOES_ON where it does not, FAILED where a
+    quantity has no value, with the culprit noted. `ready`: the interpolant is made.
     """
     events, clock = run.events, run.clock
-    stop = 1.0
+    stop = GOES_ON
     for k in range(events.kind.shape[0]):
+        run.shared.culprit[0] = k
         before, after = events.value[k], quantity(t + h, k, run.y, run, loads, call)
+        if not abs(after) < FINITE:
+            return FAILED
         events.value[k] = after
         if not bracketed(before, after, events.direction[k]):
             continue
@@ -108,6 +120,8 @@ def watch(t, h, ready, run, loads, call):
             interpolant(t, h, run, loads, call)
             ready = True
         theta = crossing(t, h, k, before, after, run, loads, call)
+        if theta == FAILED:
+            return FAILED
         place = clock.events[0]
         if place < events.found.shape[0]:
             events.found[place, 0] = k
