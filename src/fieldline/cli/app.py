@@ -13,6 +13,7 @@ from fieldline.cli.design import design
 from fieldline.cli.field import field
 from fieldline.cli.models import models
 from fieldline.cli.scenario import scenario
+from fieldline.cli.simulate import simulate
 
 app = typer.Typer(
     name="fieldline",
@@ -23,7 +24,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (attitude, calibrate, field, demo, case, models):
+for command in (attitude, calibrate, simulate, field, demo, case, models):
     app.command()(command)
 app.add_typer(design, name="design")
 app.add_typer(scenario, name="scenario")
