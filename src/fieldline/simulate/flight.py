@@ -24,6 +24,7 @@ from fieldline.simulate.assembly.host import Host
 from fieldline.simulate.assembly.plant import plant_of
 from fieldline.simulate.assembly.software import place, software_of, tasks_of
 from fieldline.simulate.assembly.start import start_of
+from fieldline.simulate.interruption import noted
 from fieldline.simulate.loop.fly import fly
 from fieldline.simulate.loop.records import Outcome, Run, Stepping
 from fieldline.simulate.scenario.states import period_s, start_states
@@ -81,17 +82,20 @@ class Flight:
         """Fly to the end, or until something ends the run; `progress` is told the fraction done."""
         chunk = FIRST_CHUNK
         try:
-            while self.outcome == Outcome.PAUSED:
-                begun = time.perf_counter()
-                self.outcome = Outcome(self._fly_on(chunk))
-                spent = time.perf_counter() - begun
-                chunk = int(min(max(chunk * CHUNK_S / max(spent, 1e-6), chunk / 4, 10), 4 * chunk, 1e7))
-                if progress is not None:
-                    progress(min(self.clock.t[0] / self.duration_s, 1.0))
+            with noted(self.host):
+                while self.outcome == Outcome.PAUSED and self.host.error is None:
+                    begun = time.perf_counter()
+                    self.outcome = Outcome(self._fly_on(chunk))
+                    spent = time.perf_counter() - begun
+                    chunk = int(min(max(chunk * CHUNK_S / max(spent, 1e-6), chunk / 4, 10), 4 * chunk, 1e7))
+                    if progress is not None:
+                        progress(min(self.clock.t[0] / self.duration_s, 1.0))
         except KeyboardInterrupt:
             self.interrupted = True
         if isinstance(self.host.error, KeyboardInterrupt):
             self.interrupted = True
+        elif self.host.error is not None and self.outcome in (Outcome.PAUSED, Outcome.DONE):
+            self.outcome = Outcome.LOAD_RAISED  # in the last look at the loads, for the record
         return self.outcome
 
     def _fly_on(self, budget: int) -> int:

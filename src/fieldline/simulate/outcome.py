@@ -86,6 +86,13 @@ def _load(what: str):
     return words
 
 
+def _event(flight, t: float) -> str:
+    event = flight.scenario.event[int(flight.shared.culprit[0])]
+    error = flight.host.error
+    told = "gave no finite number" if error is None else f"raised {type(error).__name__}: {error}"
+    return f'event "{event.name or event.kind}" ({event.function}) {told} at t = {t:.6g} s; it must return at least one number.'
+
+
 def _coarse(flight, t: float) -> str:
     bodies = flight.plant.bodies
     rates = [np.linalg.norm(flight.y[13 * b + 10 : 13 * b + 13]) for b in range(len(bodies.mass))]
@@ -133,5 +140,6 @@ WORDS = {
     Outcome.LAW_NOT_FINITE: _not_finite,
     Outcome.LOAD_RAISED: _load("raised"),
     Outcome.LOAD_SHAPE: _load("returned a wrong count of numbers"),
+    Outcome.EVENT_FAILED: _event,
     Outcome.LOAD_NOT_FINITE: _load("returned a number that is not finite"),
 }

@@ -5,8 +5,8 @@
         step the plant to the next time at which anything is due
 
 RK4 divides the way to the next such time into equal steps of at most the given length; DOP853 chooses its steps by their
-error and interpolates outputs, which do not bind it. The loop returns after `budget` steps, and goes on where it was
-when it is called again.
+error and interpolates outputs, which do not bind it. Where an event stops the run, the last row is that moment. The loop
+returns after `budget` steps, and goes on where it was when it is called again.
 """
 
 from __future__ import annotations
@@ -237,6 +237,8 @@ def fly(budget, run, laws, memories, parameters, loads, call, rng):
             return DONE
         outcome, t = advance(t, next_time(t, run), run, loads, call)
         clock.t[0] = t
+        if outcome == STOPPED and t - run.record.seconds[clock.rows[0] - 1] > SAME_TIME_S:
+            write_row(t, run.y, run, loads, call)
         if outcome != 0:
             return outcome
     return PAUSED

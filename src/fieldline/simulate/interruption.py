@@ -1,0 +1,32 @@
+"""Ctrl-C while compiled code runs.
+
+Python hears a signal at the next line of Python, and in a run that is as a rule the first of a function that compiled
+code calls back: what is raised there has no caller to go to and would be lost. So the first Ctrl-C is written down where
+the loop looks, and a second one, for a law that does not end, is raised as usual.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def noted(host) -> Iterator[None]:
+    """Within: `host.error` becomes a KeyboardInterrupt at the first SIGINT, unless the program handles it in a way of its own."""
+    usual = signal.default_int_handler
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGINT) is not usual:
+        yield
+        return
+
+    def note(number, frame):
+        signal.signal(signal.SIGINT, usual)
+        host.error = KeyboardInterrupt()
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, usual)
