@@ -34,7 +34,7 @@ def torque_picture(record: RunRecord, b: int) -> Picture | None:
         )
         drawn.append(rms)
     logarithmic(one, np.concatenate(drawn))
-    finish(one, record, slice_words(record), "N m")
+    finish(one, record, slice_words(record), "N m", columns=9)
     one.set_xlabel(record.clock.label)
     largest = max(sizes, key=lambda name: float(np.sqrt(np.mean(sizes[name] ** 2))))
     return Picture(

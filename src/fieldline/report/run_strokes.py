@@ -22,7 +22,7 @@ def stroke(axes: Any, record: RunRecord, values: np.ndarray, k: int, label: str 
     line(axes, record.time, values, COLOURS[k % len(COLOURS)], label, dashed=k >= len(COLOURS), **how)
 
 
-def finish(axes: Any, record: RunRecord, title: str, unit: str, *, keyed: bool = True) -> None:
+def finish(axes: Any, record: RunRecord, title: str, unit: str, *, keyed: bool = True, columns: int = 6) -> None:
     """Title, unit and legend of a panel."""
     record.shade(axes)
     axes.set_title(title)
@@ -30,7 +30,7 @@ def finish(axes: Any, record: RunRecord, title: str, unit: str, *, keyed: bool =
     if axes.get_yscale() == "linear":
         axes.yaxis.set_major_formatter(_plain)
     if keyed:
-        legend(axes)
+        legend(axes, columns)
 
 
 def _plain(value: float, _: object) -> str:

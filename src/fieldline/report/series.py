@@ -51,9 +51,9 @@ def spread(
     axes.fill_between(whole, low, with_gaps(short, high, widest)[1], color=colour, label=label, alpha=0.25, linewidth=0)
 
 
-def legend(axes: Any) -> None:
+def legend(axes: Any, columns: int = 6) -> None:
     """A legend in one row above the axes, on the right, where it hides no data; its dots large enough to see."""
-    shown = axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.995), ncols=6)
+    shown = axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.995), ncols=columns)
     for handle in shown.legend_handles:
         if getattr(handle, "get_marker", lambda: "")() == ".":
             handle.set_markersize(7.0)
