@@ -1,11 +1,11 @@
 """Events against times found independently: where a quantity crosses, which way, and what a stop does."""
 
 import numpy as np
-import plant_flights as pf
 import pytest
 from scipy.optimize import brentq
 
 import fieldline as fl
+import plant_flights as pf
 from fieldline.environment.eclipse import eclipse
 from fieldline.frames.earth_rotation import dcm_ei, geodetic_from_itrs
 
@@ -43,6 +43,10 @@ def crossings(quantity, seconds, step=10.0):
     return out
 
 
+def plane_event(name, z, **more):
+    return {"kind": "user", "name": name, "function": "user_functions:height", "parameters": {"z": z}} | more
+
+
 def time_of(t):
     return START + np.timedelta64(round(1e9 * t), "ns")
 
@@ -50,15 +54,18 @@ def time_of(t):
 @pytest.mark.parametrize("method", METHODS)
 def test_eclipses_altitudes_and_planes_are_met_to_a_microsecond(method):
     flight = pf.flown(
-        POINT, seconds=12000.0, orbit=ELLIPSE, integrator=METHODS[method] | {"relative_tolerance": 1e-12, "position_tolerance_m": 1e-6},
+        POINT,
+        seconds=12000.0,
+        orbit=ELLIPSE,
+        integrator=METHODS[method] | {"relative_tolerance": 1e-12, "position_tolerance_m": 1e-6},
         event=[
             {"kind": "eclipse"},
             {"kind": "altitude", "altitude_km": 650.0},
-            {"kind": "user", "name": "node", "function": "user_functions:height", "parameters": {"z": 0.0}},
-            {"kind": "user", "name": "up", "function": "user_functions:height", "parameters": {"z": 1e6}, "direction": "rising"},
-            {"kind": "user", "name": "down", "function": "user_functions:height", "parameters": {"z": 1e6}, "direction": "falling"},
+            plane_event("node", 0.0),
+            plane_event("up", 1e6, direction="rising"),
+            plane_event("down", 1e6, direction="falling"),
         ],
-    )  # fmt: skip
+    )
 
     def dark(t):
         return eclipse(fine(ELLIPSE, t), time_of(t)) - 0.5

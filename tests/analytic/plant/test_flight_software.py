@@ -1,11 +1,13 @@
 """Discrete software on a continuous plant: when commands act, what becomes of them on the way, and what sensors see."""
 
 import numpy as np
-import plant_flights as pf
 import pytest
+
+import plant_flights as pf
+from fieldline.simulate.loop.records import NEVER
 from plant_flights import law, torquers, wheels
 
-from fieldline.simulate.loop.records import NEVER
+pytestmark = pytest.mark.kernels
 
 
 def moments(flight):
@@ -233,13 +235,15 @@ def test_an_empty_queue_is_never_due():
 
 def test_perfect_sensors_read_the_truth():
     record = pf.body(
-        magnetometer={"rate_hz": 1.0, "phase_s": 0.5}, gyro={"rate_hz": 2.0}, navigation={"rate_hz": 0.5}, star_tracker={"rate_hz": 1.0},
+        magnetometer={"rate_hz": 1.0, "phase_s": 0.5},
+        gyro={"rate_hz": 2.0},
+        navigation={"rate_hz": 0.5},
+        star_tracker={"rate_hz": 1.0},
         sun_sensor={"rate_hz": 1.0},
-    )  # fmt: skip
+    )
     flight = pf.flown(record, seconds=30.0, output=0.5, integrator={"step_s": 0.25})
-    seconds, states = pf.rows(flight)
+    _, states = pf.rows(flight)
     samples = flight.record.samples[: int(flight.clock.samples[0])]
-    names = {1: "magnetometer", 2: "gyro"}
     turn = pf.turned(states[:, 0])
     truth = {
         "navigation": states[:, 0, :3],
@@ -248,7 +252,6 @@ def test_perfect_sensors_read_the_truth():
         "star_tracker": states[:, 0, 6:10],
     }
     order = ["navigation", "magnetometer", "gyro", "sun_sensor", "star_tracker"]
-    assert names
     for j, name in enumerate(order):
         mine = samples[samples[:, 0] == j]
         assert len(mine) == {"gyro": 61, "navigation": 16, "magnetometer": 30}.get(name, 31)

@@ -1,10 +1,10 @@
 """What loads do to an orbit and to a pair on a line in the long run, against closed forms."""
 
 import numpy as np
-import plant_flights as pf
 import pytest
 
 import fieldline as fl
+import plant_flights as pf
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_GM_M3_S2, EARTH_J2, EARTH_ROTATION_RATE_RAD_S
 
 POINT = pf.body(kind="point")
