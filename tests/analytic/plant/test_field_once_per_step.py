@@ -17,9 +17,7 @@ def tumbler(update, step, seconds, rate=2.0, **more):
     """A 3U CubeSat with a residual dipole, tumbling freely."""
     record = pf.body(rate_deg_s=(rate, -rate, rate), gravity_gradient=True, **SMALL, **more)
     integrator = {"step_s": step, "field_update": update}
-    return pf.flown(
-        record, seconds=seconds, output=seconds / 20, orbit=POLAR, environment={"gravity": "j2"}, integrator=integrator
-    )
+    return pf.flown(record, seconds=seconds, output=seconds / 20, integrator=integrator, **OVER_THE_POLES)
 
 
 def detumbler(update, step, seconds):
@@ -34,9 +32,8 @@ def detumbler(update, step, seconds):
         record,
         seconds=seconds,
         output=seconds / 20,
-        orbit=POLAR,
-        environment={"gravity": "j2"},
         integrator=integrator,
+        **OVER_THE_POLES,
         software=software,
     )
 
