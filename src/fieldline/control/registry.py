@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from fieldline.control import b_dot, magnetic_pd, momentum, regulator_design, residual_dipole, tracking_line, wheel_pointing
+from fieldline.control import (
+    b_dot,
+    magnetic_pd,
+    mode_manager,
+    momentum,
+    regulator_design,
+    residual_dipole,
+    tracking_line,
+    wheel_pointing,
+)
 from fieldline.control.law import Law
 from fieldline.errors import InputError, nearest, shown
 
-_FAMILIES = (b_dot, tracking_line, momentum, wheel_pointing, magnetic_pd, regulator_design, residual_dipole)
+_FAMILIES = (b_dot, tracking_line, momentum, wheel_pointing, magnetic_pd, regulator_design, residual_dipole, mode_manager)
 
 LAWS: dict[str, Law] = {law.name: law for family in _FAMILIES for law in family.LAWS}
 

@@ -26,7 +26,7 @@ from fieldline.frames.matrices import IDENTITY, matadd, matmul, matscale, matsub
 from fieldline.frames.vectors import add, cross, norm, scale, vec
 from fieldline.mechanics.rigid_body import euler_rate, rate_step, turn
 
-NO_DIPOLE = (0.0, 0.0, 0.0)
+NO_DIPOLE = NO_TORQUE = (0.0, 0.0, 0.0)
 ZERO9 = (0.0,) * 9
 MOST_PARTS = 1000  # substeps of one step: a rate that ran away must not run for ever
 LARGEST_TURN = 0.15  # [rad] of one substep of Euler's equations: 2e-7 rad of error each
@@ -36,7 +36,8 @@ class RateModel(NamedTuple):
     """What moves the rate; a record of floats for the kernels, made by `random_walk` or `rigid_body`.
 
     inertia and its inverse: nine floats, any scale (only ratios act); dipole: residual dipole over that scale
-    [A m2 / kg m2 when the inertia's unit is kg m2]; noise: s of (2) [rad/s/sqrt(s)].
+    [A m2 / kg m2 when the inertia's unit is kg m2]; noise: s of (2) [rad/s/sqrt(s)]; torque: constant in body axes, over that
+    scale too.
     """
 
     rigid: bool
@@ -44,6 +45,7 @@ class RateModel(NamedTuple):
     inertia_inv: tuple
     dipole: tuple
     noise: float
+    torque: tuple = NO_TORQUE
 
 
 def random_walk(noise: float) -> RateModel:
@@ -107,9 +109,10 @@ def propagate(q, w, known, field_i, pull_i, h, model):
 
 @njit(cache=True)
 def outer_torque(q, dipole, field_i, pull_i, model):
-    """Torque over the inertia's scale: residual and commanded dipole, and gravity gradient."""
+    """Torque over the inertia's scale: constant one, residual and commanded dipole, and gravity gradient."""
     pull_b = to_body(q, pull_i)
-    return add(cross(dipole, to_body(q, field_i)), cross(pull_b, matvec(model.inertia, pull_b)))
+    magnetic = add(cross(dipole, to_body(q, field_i)), model.torque)
+    return add(magnetic, cross(pull_b, matvec(model.inertia, pull_b)))
 
 
 @njit(cache=True)

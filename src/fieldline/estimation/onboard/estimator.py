@@ -4,8 +4,10 @@
 2. Once the body turns slowly and a window of readings is full, the search without a prior: `search`. It fails, or finds
    two motions that are as likely: it is tried again when there is more to read.
 3. From then on the Kalman filter, one step a reading: `tracker`. Its motion is the rigid body's, with the gravity
-   gradient, the commanded dipole and the residual dipole that the search found; its slow error takes up what is left of the
-   bias. It says an attitude while its own spread is small, and starts again from nothing when the readings no longer fit.
+   gradient, the commanded dipole, the residual dipole that the search found, and a constant torque; its slow error takes up
+   what is left of the bias. It says an attitude while its own spread is small, and starts again from nothing when the
+   readings no longer fit.
+4. Every orbit dipole, torque and rate noise are found anew from the readings since the last time: `revision`.
 
 Valid for a rigid body of known inertia in low orbit whose magnetometer reads with the torquers off, or is cleared of them.
 """
@@ -14,6 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fieldline.estimation.motion import RateModel
 from fieldline.estimation.onboard.bias import MagnitudeBias
 from fieldline.estimation.onboard.readings import Readings
 from fieldline.estimation.onboard.revision import revise
@@ -21,7 +24,7 @@ from fieldline.estimation.onboard.search import Found, search
 from fieldline.estimation.onboard.tracker import Tracker
 from fieldline.sensing.measurement import FIELD, ORBIT
 
-LONGEST_WINDOWS = 2.5  # that a revision reads
+LONGEST = 1.2  # of the time between two revisions, that one of them reads
 LONGEST_GAP_S = 600.0  # without readings, after which nothing is known any more
 
 
@@ -29,7 +32,7 @@ class OnboardEstimator:
     """Flight software: (t, measurement, memory, params) -> q_bi and omega_bi_b (7,), or None while it knows nothing.
 
     inertia_kg_m2 (3, 3); window_s of the search, step_s between its rows, retry_s until it is tried again; revise_s between two
-    revisions of the dipole, which read up to LONGEST_WINDOWS windows;
+    revisions of dipole and torque, about an orbit;
     rate_max_deg_s: no search while the field turns faster in body axes; std_max_deg: no attitude is told that is less
     certain; bias_std_tesla of the magnetometer; duty_cycle: share of the time in which a commanded dipole is in force;
     rate_noise_rad_s_sqrt_s: least random walk of the rate, for torques that the motion lacks.
@@ -38,7 +41,7 @@ class OnboardEstimator:
     """
 
     def __init__(
-        self, inertia_kg_m2, *, window_s: float = 2400.0, step_s: float = 10.0, retry_s: float = 300.0, revise_s: float = 1200.0,
+        self, inertia_kg_m2, *, window_s: float = 2400.0, step_s: float = 10.0, retry_s: float = 300.0, revise_s: float = 5400.0,
         rate_max_deg_s: float = 1.0, std_max_deg: float = 10.0, bias_std_tesla: float = 1e-6, duty_cycle: float = 1.0,
         rate_noise_rad_s_sqrt_s: float = 1e-6,
     ):  # fmt: skip
@@ -48,11 +51,12 @@ class OnboardEstimator:
         self._rate_max, self._std_max = np.radians(rate_max_deg_s), np.radians(std_max_deg)
         self._duty, self._rate_noise = duty_cycle, rate_noise_rad_s_sqrt_s
         self._bias = MagnitudeBias(bias_std_tesla)
-        self._readings = Readings(LONGEST_WINDOWS * window_s, step_s)
+        self._readings = Readings(max(window_s, LONGEST * revise_s), step_s)
         self._tracker: Tracker | None = None
         self._bias_b = np.zeros(3)
+        self._torques: np.ndarray | None = None
         self._next = 0.0
-        self._read = -np.inf
+        self._read = self._revised = -np.inf
         self.events: list[tuple[float, str]] = []
 
     def __call__(self, t: float, measurement, memory=None, params=None) -> np.ndarray | None:
@@ -103,27 +107,27 @@ class OnboardEstimator:
         if not isinstance(found, Found):
             self.events.append((t, found))
             return
-        self._follow(found, float(series.seconds[-1]))
+        self._tracker = Tracker(found._replace(model=self._model(found.model)), float(series.seconds[-1]))
         self.events.append((t, f"found: {found.words}"))
 
     def _revision(self, t: float, tracker: Tracker) -> None:
         """Dipole and noise from the last windows."""
         self._next = t + self._revise
         bias_b, _ = self._bias.estimate()
-        series = self._readings.series(bias_b)
-        found = revise(series, tracker, self._inertia)
-        if found is not None:
-            self._bias_b = bias_b
-            self._follow(found, float(series.seconds[-1]))
-            self.events.append((t, f"revised: {found.words}"))
+        series = self._readings.series(bias_b, t - self._revised)
+        revision = revise(series, tracker, self._torques)
+        if revision is not None:
+            self._bias_b, self._torques, self._revised = bias_b, revision.covariance, t
+            tracker.model = self._model(revision.model)
+            self.events.append((t, f"revised: {revision.words}"))
 
-    def _follow(self, found: Found, t: float) -> None:
-        """Go on from what was found at t."""
-        model = found.model._replace(noise=max(found.model.noise, self._rate_noise))
-        self._tracker = Tracker(found._replace(model=model), t)
+    def _model(self, found: RateModel) -> RateModel:
+        """With the least noise that the rate may have."""
+        return found._replace(noise=max(found.noise, self._rate_noise))
 
     def _lose(self, t: float, why: str) -> None:
         """Back to knowing nothing; the readings are kept."""
+        self._torques, self._revised = None, -np.inf
         self._tracker, self._next = None, t + self._retry
         self.events.append((t, f"lost: {why}"))
 

@@ -11,6 +11,7 @@ TEMPLATES = {
     "picosatellite": "a picosatellite at 180 deg/s per axis, bang-bang torquers",
     "pointing": "a small satellite holds three axes by the field alone",
     "regulator": "the same by a periodic linear-quadratic regulator",
+    "chain": "from tumbling to pointing, magnetometer and torquers alone",
     "wheels": "wheels point, torquers unload them",
     "dump": "torquers take the momentum out of wheels",
     "passive": "a magnet and hysteresis rods, no software",
