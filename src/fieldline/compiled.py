@@ -12,17 +12,15 @@ apart, costs some two seconds of compilation each.
 `merged` is for inner kernels with one caller that take many records: passing five hundred numbers costs more than what
 they do with them, so their code is put where it is called (7.0 against 4.0 microseconds a step of the plant's loop).
 
-Division by zero gives infinity or NaN, for the caller to find.
+Kernels let go of the interpreter: runs in threads go side by side. Division by zero gives infinity or NaN, for the caller to find.
 """
 
 from __future__ import annotations
 
 from numba import njit
 
-kernel = njit(cache=True, error_model="numpy", _nrt=False)
+kernel = njit(cache=True, error_model="numpy", _nrt=False, nogil=True)
 inner = njit(cache=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-merged = njit(
-    cache=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True
-)
+merged = njit(cache=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
 # Said aloud that it counts: a callee inherits what its caller was compiled with.
 counting = njit(cache=True, _nrt=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)

@@ -27,6 +27,7 @@ from math import radians, sin, sqrt
 import numpy as np
 from numba import njit
 
+from fieldline.compiled import kernel
 from fieldline.control.law import Law, Parameter, complete
 from fieldline.control.readings import field_known, finite3, gyro_known, lifted
 from fieldline.frames.vectors import axpy, cross, dot, scale, sub
@@ -38,19 +39,19 @@ HAS_FIELD, TIME, FIELD_X, HAS_CHANGE, CHANGE_X, RESTING, COMMAND_X = 0, 1, 2, 5,
 MEMORY = 13
 
 
-@njit(cache=True)
+@kernel
 def _store(memory, first, v):
     memory[first] = v[0]
     memory[first + 1] = v[1]
     memory[first + 2] = v[2]
 
 
-@njit(cache=True)
+@kernel
 def _stored(memory, first):
     return (memory[first], memory[first + 1], memory[first + 2])
 
 
-@njit(cache=True)
+@kernel
 def field_change(measurement, memory, params):
     """Whether dB/dt [T/s] in body axes is known at a new reading, and its value; memory takes the reading in."""
     field_b = lifted(measurement.field_b)
@@ -76,7 +77,7 @@ def field_change(measurement, memory, params):
     return True, change
 
 
-@njit(cache=True)
+@kernel
 def _rests(change, field_b, memory, params):
     """Hysteresis of the handover: whether the law gives no moment now."""
     rate = sqrt(dot(change, change) / dot(field_b, field_b))
@@ -87,7 +88,7 @@ def _rests(change, field_b, memory, params):
     return memory[RESTING] > 0.5
 
 
-@njit(cache=True)
+@kernel
 def _change_to_act_on(t, measurement, memory, params):
     """(act, hold, dB/dt): act on a new derivative, hold the last command, or neither, which is no moment at all."""
     if not field_known(measurement):
@@ -123,7 +124,7 @@ def b_dot(t, measurement, memory, params):
     return _answer(hold, moment, memory)
 
 
-@njit(cache=True)
+@kernel
 def _against(change, moment_max, dead_band):
     """One axis of equation (21): zero within the dead band."""
     if abs(change) <= dead_band:

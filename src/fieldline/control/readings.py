@@ -7,25 +7,24 @@ from __future__ import annotations
 
 from math import isfinite
 
-from numba import njit
-
+from fieldline.compiled import kernel
 from fieldline.frames.vectors import cross, dot
 from fieldline.sensing.measurement import ATTITUDE, FIELD, GYRO, ORBIT, RATE
 
 
-@njit(cache=True)
+@kernel
 def lifted(values):
     """The first three numbers of an array as a tuple."""
     return (values[0], values[1], values[2])
 
 
-@njit(cache=True)
+@kernel
 def finite3(v):
     """Whether all three components are finite."""
     return isfinite(v[0]) and isfinite(v[1]) and isfinite(v[2])
 
 
-@njit(cache=True)
+@kernel
 def field_known(measurement):
     """Whether there is a field reading [T] to steer by: valid, finite and not zero."""
     b = measurement.field_b
@@ -33,13 +32,13 @@ def field_known(measurement):
     return measurement.valid[FIELD] > 0.5 and some and finite3(lifted(b)) and isfinite(measurement.field_time_s[0])
 
 
-@njit(cache=True)
+@kernel
 def gyro_known(measurement):
     """Whether the gyro's reading [rad/s] may be used."""
     return measurement.valid[GYRO] > 0.5 and finite3(lifted(measurement.rate_b))
 
 
-@njit(cache=True)
+@kernel
 def attitude_known(measurement):
     """Whether the attitude q_bi is known on board: valid, and a quaternion within a tenth of unit length."""
     q = measurement.q_bi
@@ -49,13 +48,13 @@ def attitude_known(measurement):
     return measurement.valid[ATTITUDE] > 0.5 and 0.81 < square < 1.21
 
 
-@njit(cache=True)
+@kernel
 def rate_known(measurement):
     """Whether the rate omega_bi_b [rad/s] is known on board."""
     return measurement.valid[RATE] > 0.5 and finite3(lifted(measurement.omega_bi_b))
 
 
-@njit(cache=True)
+@kernel
 def orbit_known(measurement):
     """Whether position and velocity are known on board: valid, finite, and not along one line."""
     r, v = lifted(measurement.position_i), lifted(measurement.velocity_i)
@@ -65,7 +64,7 @@ def orbit_known(measurement):
     return dot(h, h) > 1e-12 * dot(r, r) * dot(v, v)
 
 
-@njit(cache=True)
+@kernel
 def wheel_momentum_b(measurement, params, first):
     """Momentum of all wheels [N m s], body axes; params from `first` on: number of wheels, then three floats of each axis.
 
