@@ -12,7 +12,8 @@ apart, costs some two seconds of compilation each.
 `merged` is for inner kernels with one caller that take many records: passing five hundred numbers costs more than what
 they do with them, so their code is put where it is called (7.0 against 4.0 microseconds a step of the plant's loop).
 
-Kernels let go of the interpreter: runs in threads go side by side. Division by zero gives infinity or NaN, for the caller to find.
+Kernels let go of the interpreter, so that runs in threads go side by side. Division by zero gives infinity or NaN, for
+the caller to find.
 """
 
 from __future__ import annotations
