@@ -18,7 +18,8 @@ def write_report(dataset: xarray.Dataset, path: str | Path) -> Path:
 
     Parameters
     ----------
-    dataset : of `estimate_attitude` or `simulate`, in SI; the report shows degrees, kilometres and microtesla, and says so.
+    dataset : Dataset of `estimate_attitude` or `simulate`, in SI; the report shows degrees, kilometres and microtesla, and
+        says so.
     path : the file to write.
 
     Errors: InputError where the folder does not exist or cannot be written to.

@@ -30,6 +30,8 @@ def torque_picture(record: RunRecord, b: int) -> Picture | None:
             color=COLOURS[k % len(COLOURS)],
             label=name.replace("_", " "),
             linewidth=1.0,
+            marker=".",  # what acts for an instant is seen too
+            markersize=2.0,
             linestyle="-" if k < len(COLOURS) else (0, (4, 2.5)),
         )
         drawn.append(rms)

@@ -2,6 +2,10 @@
 
 import json
 import re
+import sys
+import time
+from importlib import import_module
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -114,6 +118,18 @@ def test_telemetry_needs_a_magnetometer(folder, capsys):
     (folder / "blind.toml").write_text(text)
     assert main(["simulate", "blind.toml", "--as-telemetry", "a.csv"]) == 2
     assert "no body has a magnetometer" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("compiling", [True, False])
+def test_compiling_is_told_of_while_it_lasts(monkeypatch, compiling):
+    plant = SimpleNamespace(fly=SimpleNamespace(is_compiling=compiling))
+    monkeypatch.setitem(sys.modules, "fieldline.simulate.loop.fly", plant)
+    module = import_module("fieldline.cli.simulate")
+    monkeypatch.setattr(module, "COMPILING_AFTER_S", 0.01)
+    told = []
+    with module._told_of_compiling(lambda *words: told.append(words)):
+        time.sleep(0.2)
+    assert told == ([("compiling the plant", 1, 1, "once; it takes about a minute")] if compiling else [])
 
 
 @pytest.fixture(scope="module")
