@@ -184,6 +184,20 @@ def _events(data, flight, start) -> None:
     data["event_direction"] = ("event", found[:, 2].astype(np.int8), {"long_name": "1 rising, -1 falling"})
 
 
+def inputs_of(scenario) -> dict[str, str]:
+    """SHA-256 of every file that a scenario names: orbits, Earth orientation, the user's functions."""
+    from fieldline.files import sha256_of
+
+    orbits = [scenario.orbit, *(body.orbit for body in scenario.body)]
+    named = [one.tle for one in orbits if one is not None and one.tle is not None]
+    named += [scenario.environment.earth_orientation or ""]
+    functions = [one.law for one in scenario.software] + [one.function or "" for one in scenario.event]
+    functions += [one.function for body in scenario.body for one in body.load]
+    named += [name.rpartition(":")[0] for name in functions if ".py:" in name]
+    files = {name.strip() for name in named if name.strip() and "\n" not in name.strip()}
+    return {name: sha256_of(scenario.folder / name) for name in sorted(files)}
+
+
 def attributes(flight) -> dict:
     """Provenance: scenario, seed, models, versions, outcome."""
     scenario = flight.scenario
@@ -193,6 +207,7 @@ def attributes(flight) -> dict:
         "versions": {name: metadata.version(name) for name in ("fieldline", "numba", "numpy", "pyerfa")},
         "scenario": scenario.name,
         "scenario_sha256": scenario.sha256,
+        "inputs": inputs_of(scenario),
         "seed": flight.seed,
         "field_model": "uniform" if model is None else model.stamp([scenario.time.start, end]),
         "gravity": scenario.environment.gravity,
