@@ -113,3 +113,25 @@ def listens(t, measurement, memory, params):
     memory[20:23] = measurement.field_i
     memory[23] += 1.0
     return [1e-3 * v for v in memory[4:7]] if measurement.valid[4] else [0.0, 0.0, 0.0]
+
+
+@njit
+def compiled_law_raises(t, measurement, memory, params):
+    """Divides by what is zero from 30 s on: a compiled law raises too."""
+    out = np.zeros(3)
+    out[0] = 1.0 / (memory[0] if t > 29.0 else 1.0)
+    return out
+
+
+@njit
+def compiled_raises(t, state, parameters):
+    """A compiled load, or event's quantity, that raises from 30 s on."""
+    if t >= 30.0:
+        raise ValueError("compiled and cross")
+    return np.ones(6) * 1e-9
+
+
+@njit
+def compiled_short(t, state, parameters):
+    """A compiled load, or event's quantity, without numbers from 30 s on."""
+    return np.ones(6 if t < 30.0 else 0) * 1e-9

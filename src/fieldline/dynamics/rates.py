@@ -52,6 +52,7 @@ LOADS = (
 NOTHING = (0.0, 0.0, 0.0)
 FINITE = 1e300  # what is not below this is infinite or not a number
 RAISED, WRONG_SHAPE, NOT_FINITE = 1, 2, 3  # what a user's load may do
+LAW_AT_WORK, LOAD_AT_WORK, EVENT_AT_WORK = 1, 2, 3  # whose compiled function is running, should it raise
 FIELD_STEP_S = 1.0  # over which the field's change along the orbit is taken, for the rods
 
 
@@ -240,7 +241,9 @@ def user_loads(t, z, start, plant, loads, call, shared, log, out):
                 return RAISED
         else:
             parameters = user.parameters[user.first[k] : user.first[k + 1]]
+            shared.culprit[2] = LOAD_AT_WORK
             shared.replies[0] = ask(loads, slot, t, shared.state, parameters, shared.reply)
+            shared.culprit[2] = 0
         reply = shared.reply
         if shared.replies[0] != 6:
             return WRONG_SHAPE

@@ -38,10 +38,10 @@ class Shared(NamedTuple):
 
     outer: np.ndarray  # (bodies, 6) forces_i and torques_b of lines and of the user's loads
     state: np.ndarray  # (13,) state of the body that a user's load acts on
-    reply: np.ndarray  # (64,) what a plain Python function answered
+    reply: np.ndarray  # (64 or more,) what a user's function answered
     replies: np.ndarray  # (1,) int64, how many numbers that is
     commands: np.ndarray  # (actuators,) what a law commands
-    culprit: np.ndarray  # (2,) int64: the task or load at fault, and how many numbers it returned
+    culprit: np.ndarray  # (3,) int64: task, load or event at fault, how many numbers it returned, which compiled kind runs
 
 
 def new_work(plant: Plant, evaluations: int, *, once_a_step: bool = False, loads: int = 0) -> Work:
@@ -65,10 +65,10 @@ def new_shared(plant: Plant) -> Shared:
     return Shared(
         outer=np.zeros((len(plant.bodies.mass), 6)),
         state=np.zeros(13),
-        reply=np.zeros(64),
+        reply=np.zeros(64 + len(plant.thrusters.body)),
         replies=np.zeros(1, dtype=np.int64),
         commands=np.zeros(len(plant.torquers.body) + len(plant.wheels.body) + len(plant.thrusters.body)),
-        culprit=np.zeros(2, dtype=np.int64),
+        culprit=np.zeros(3, dtype=np.int64),
     )
 
 

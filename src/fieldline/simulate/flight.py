@@ -15,6 +15,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fieldline.dynamics.parameters import TANGENT, tangent_size
+from fieldline.dynamics.rates import EVENT_AT_WORK, LAW_AT_WORK, LOAD_AT_WORK
 from fieldline.dynamics.step import new_shared, new_work
 from fieldline.integrate.tableau import DOP853, RK4
 from fieldline.simulate.assembly import boards as made
@@ -33,6 +34,7 @@ FLOOR_M = 80e3  # height below which neither orbit nor air models mean anything
 NOISE_STREAM = 0x6E6F6973  # keeps the sensors' draws apart from those of the start
 CHUNK_S = 0.2  # of wall time between returns
 FIRST_CHUNK = 200  # steps
+RAISED_COMPILED = {LAW_AT_WORK: Outcome.LAW_RAISED, LOAD_AT_WORK: Outcome.LOAD_RAISED, EVENT_AT_WORK: Outcome.EVENT_FAILED}
 
 
 class Flight:
@@ -92,6 +94,11 @@ class Flight:
                         progress(min(self.clock.t[0] / self.duration_s, 1.0))
         except KeyboardInterrupt:
             self.interrupted = True
+        except Exception as error:
+            if self.shared.culprit[2] == 0:
+                raise
+            self.outcome = RAISED_COMPILED[int(self.shared.culprit[2])]
+            self.host.error = error
         if isinstance(self.host.error, KeyboardInterrupt):
             self.interrupted = True
         elif self.host.error is not None and self.outcome in (Outcome.PAUSED, Outcome.DONE):

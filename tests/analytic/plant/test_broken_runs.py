@@ -142,3 +142,43 @@ def test_a_state_that_blows_up_is_said(tmp_path):
         fl.simulate(scenario)
     assert "finite" in str(caught.value)
     assert caught.value.dataset.attrs["complete"] == 0
+
+
+def test_compiled_functions_that_raise_are_named_too():
+    law_at_fault = law(name="compiled_law_raises", parameters=()) | {"compiled": True, "name": "mischief"}
+    load = {"load": [{"function": "user_functions:compiled_raises"}]}
+    event = {"kind": "user", "name": "mischief", "function": "user_functions:compiled_raises"}
+    cases = [
+        ({"magnetorquer": torquers()}, {"software": [law_at_fault]}, 'software "mischief" at t = 30 s', "ZeroDivisionError"),
+        (load, {}, 'load "user_functions:compiled_raises" of body "sat" raised', "ValueError: compiled and cross"),
+        ({}, {"event": [event]}, 'event "mischief"', "raised ValueError: compiled and cross"),
+    ]
+    for more, tables, *words in cases:
+        with pytest.raises(RunError) as caught:
+            fl.simulate(pf.scenario(pf.body(**more), seconds=100.0, output=5.0, **tables))
+        assert all(word in str(caught.value) for word in words), str(caught.value)
+        kept(caught.value.dataset, 30.0)
+
+
+def test_a_compiled_event_without_a_number_is_named():
+    event = {"kind": "user", "name": "mute", "function": "user_functions:compiled_short"}
+    with pytest.raises(RunError, match=r'event "mute" .* gave no finite number at t = 30 s'):
+        fl.simulate(pf.scenario(seconds=100.0, output=5.0, event=[event]))
+
+
+def test_the_librarys_own_faults_are_not_hidden():
+    """What is raised elsewhere, as by a caller's progress bar, is not blamed on a law."""
+
+    def broken(fraction):
+        raise RuntimeError("the bar broke")
+
+    with pytest.raises(RuntimeError, match="the bar broke"):
+        fl.simulate(pf.scenario(seconds=10.0), progress=broken)
+
+
+def test_a_body_of_many_thrusters_has_room_for_their_commands():
+    thruster = {"position_b_m": (0.0, 0.0, 0.0), "direction_b": (1.0, 0.0, 0.0), "force_n": 1e-6}
+    software = [law(name="steady", commands=("thrust",), parameters=[1.0] * 80)]
+    flight = pf.flown(pf.body(thruster=[thruster] * 80), seconds=4.0, output=1.0, software=software)
+    assert flight.outcome.name == "DONE"
+    assert np.all(flight.record.actuators[1] == 1.0)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import fieldline as fl
 import plant_flights as pf
 from plant_flights import torquers
 
@@ -50,6 +51,11 @@ def test_the_error_goes_with_the_square_of_the_step():
     errors = [apart(tumbler("step", step, 2000.0), tumbler("stage", step, 2000.0))[0] for step in (2.0, 1.0)]
     assert 3.5 < errors[0] / errors[1] < 4.5
     assert errors[1] < 1e-6
+
+
+def test_an_adaptive_step_that_could_not_see_it_is_refused():
+    with pytest.raises(fl.InputError, match='field_update must be "stage" for method = "dop853"'):
+        pf.scenario(integrator={"method": "dop853", "field_update": "step"})
 
 
 def test_orbits_do_not_know_of_it():

@@ -10,7 +10,7 @@ from math import nan
 
 from fieldline.compiled import counting, inner, merged
 from fieldline.dynamics.parameters import STATE
-from fieldline.dynamics.rates import three
+from fieldline.dynamics.rates import LAW_AT_WORK, three
 from fieldline.environment.ephemeris import dcm_ei_kernel
 from fieldline.environment.field import field_kernel
 from fieldline.frames.matrices import matvec, transpose
@@ -125,7 +125,9 @@ def run_task(t, i, run, laws, memories, parameters, call):
             return LAW_RAISED
         count = shared.replies[0]
     else:
+        shared.culprit[2] = LAW_AT_WORK
         count = ask(laws, slot, t, measurement_of(boards, b), memories[slot], parameters[slot], shared.reply)
+        shared.culprit[2] = 0
     reply = shared.reply
     shared.culprit[1] = count
     if tasks.estimator[i] != 0 and count == 0:

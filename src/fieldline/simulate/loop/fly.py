@@ -227,7 +227,6 @@ def fly(budget, run, laws, memories, parameters, loads, call, rng):
         for k in range(events.kind.shape[0]):
             events.value[k] = quantity(t, k, run.y, run, loads, call)
             if not abs(events.value[k]) < FINITE:
-                run.shared.culprit[0] = k
                 return EVENT_FAILED
     for _ in range(budget):
         outcome = do_due(t, run, laws, memories, parameters, loads, call, rng)

@@ -12,7 +12,7 @@ from math import nan
 
 from fieldline.compiled import inner
 from fieldline.dynamics.parameters import PLAIN_LOAD, STATE
-from fieldline.dynamics.rates import FINITE, ask, plant_rates, three
+from fieldline.dynamics.rates import EVENT_AT_WORK, FINITE, ask, plant_rates, three
 from fieldline.dynamics.step import closing_rates, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
@@ -40,6 +40,7 @@ def quantity(t, k, y, run, loads, call):
     """What event k watches, at state y; NaN where the user's function failed."""
     plant, events, shared = run.plant, run.events, run.shared
     b = events.body[k]
+    shared.culprit[0] = k
     if events.kind[k] == ECLIPSE:
         return sunlit_kernel(three(y, STATE * b), sun_kernel(t, plant.surroundings.ephemeris)) - 0.5
     if events.kind[k] == ALTITUDE:
@@ -54,7 +55,9 @@ def quantity(t, k, y, run, loads, call):
             return nan
     else:
         parameters = events.parameters[events.first[k] : events.first[k + 1]]
+        shared.culprit[2] = EVENT_AT_WORK
         shared.replies[0] = ask(loads, slot, t, shared.state, parameters, shared.reply)
+        shared.culprit[2] = 0
     return shared.reply[0] if shared.replies[0] > 0 else nan
 
 
@@ -109,7 +112,6 @@ def watch(t, h, ready, run, loads, call):
     events, clock = run.events, run.clock
     stop = GOES_ON
     for k in range(events.kind.shape[0]):
-        run.shared.culprit[0] = k
         before, after = events.value[k], quantity(t + h, k, run.y, run, loads, call)
         if not abs(after) < FINITE:
             return FAILED

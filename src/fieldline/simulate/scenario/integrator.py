@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from fieldline.records import Record
+from fieldline.records import Record, RecordError
 
 
 class Integrator(Record):
@@ -25,5 +25,20 @@ class Integrator(Record):
     angle_tolerance_rad: float = Field(default=1e-9, gt=0.0, description="error of a step in attitude, dop853 [rad]")
     rate_tolerance_rad_s: float = Field(default=1e-10, gt=0.0, description="error of a step in angular rate, dop853 [rad/s]")
     field_update: Literal["stage", "step"] = Field(
-        default="stage", description='magnetic field at each stage of a step, or once per "step": faster, first order in the step'
+        default="stage",
+        description='magnetic field at each stage of a step, or, with rk4, once per "step": faster, second order in the step',
     )
+
+    @model_validator(mode="after")
+    def _sees_its_error(self):
+        """An adaptive step cannot see the error of a field that stands still in it, and would grow until it is wrong."""
+        if self.method != "rk4" and self.field_update == "step":
+            raise RecordError(
+                [
+                    (
+                        "field_update",
+                        'must be "stage" for method = "dop853", whose error control does not see what "step" leaves out',
+                    )
+                ]
+            )
+        return self
