@@ -166,7 +166,7 @@ LOADS = (
 )
 
 
-def everything(order=(0, 1, 2)):
+def everything(order=(0, 1, 2), **more):
     """All loads at once, bodies in an order: two rigid ones and a point mass on two lines, in a tilted dipole, air and light."""
     every = {
         "residual_dipole_a_m2": (2.0, -1.0, 3.0),
@@ -199,7 +199,7 @@ def everything(order=(0, 1, 2)):
     if order[0] != 0:  # the first body stands on the orbit; the others where they may
         bodies = [b | {"offset_o_m": (0.0, 0.0, 1.0)} for b in bodies]
         bodies[0] = {key: value for key, value in bodies[0].items() if key != "offset_o_m"}
-    flight = pf.Flight(pf.scenario(*bodies, line=lines, environment=environment))
+    flight = pf.Flight(pf.scenario(*bodies, line=lines, environment=environment, **more))
     command(flight, order)
     return flight
 
