@@ -10,7 +10,14 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fieldline.simulate.free_flight import FreeFlight, fly_free
+    from fieldline.simulate.magnetometer import Magnetometer
+    from fieldline.simulate.outcome import RunError, RunInterrupted
+    from fieldline.simulate.run import simulate
+    from fieldline.simulate.scenario.scenario import Scenario
 
 _HOMES = {
     "simulate": "fieldline.simulate.run",

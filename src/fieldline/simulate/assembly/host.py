@@ -38,6 +38,8 @@ def _module_of_file(path: Path, where: str):
     if not path.is_file():
         raise InputError(f"{where} names the file {path.name}, which does not lie in {path.parent}. Is the path relative to it?")
     spec = importlib.util.spec_from_file_location(f"fieldline_user_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise InputError(f"{where} names {path.name}, which Python cannot load as a module.")
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
