@@ -17,6 +17,7 @@ from pathlib import Path
 
 import field
 import filter as kalman
+import plant
 from measure import machine, timed, wall
 
 LENGTHS = (1_000, 10_000, 100_000, 1_000_000)
@@ -41,6 +42,11 @@ def filter_chapter() -> list[str]:
     rows = [("one core", "million samples/s", ""), *kalman.table()]
     text = "The filter that `fieldline attitude` runs, and `benchmarks/filter.c`, compiled now. Hoped for: at least 0.6 of C."
     return ["## Filter and smoother", "", text, "", *markdown(rows)]
+
+
+def plant_chapter() -> list[str]:
+    """The plant against C and Basilisk, and many satellites."""
+    return plant.chapter(markdown)
 
 
 def import_s() -> float:
@@ -84,7 +90,7 @@ def scaling_chapter() -> list[str]:
 
 def page() -> str:
     """The whole page."""
-    chapters = [chapter() for chapter in (start_chapter, field_chapter, filter_chapter, scaling_chapter)]
+    chapters = [chapter() for chapter in (start_chapter, field_chapter, filter_chapter, plant_chapter, scaling_chapter)]
     head = [
         "# Benchmarks",
         "",

@@ -12,7 +12,8 @@ import numpy as np
 from fieldline.simulate.flight import Flight
 from fieldline.simulate.scenario.scenario import Scenario
 
-SOURCE = Path(__file__).with_name("plant.c")
+HERE = Path(__file__).parent
+SOURCE = HERE / "plant.c"
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-shared", "-fPIC")
 TOML = """
 name = "benchmark"
@@ -56,7 +57,7 @@ class Constants(ctypes.Structure):
 
 def scenario(**changes) -> Scenario:
     """The satellite, some of its values changed."""
-    return Scenario.from_toml(TOML).replace(**changes)
+    return Scenario.from_toml(TOML, folder=HERE).replace(**changes)
 
 
 def constants(flight: Flight) -> Constants:
@@ -70,7 +71,7 @@ def constants(flight: Flight) -> Constants:
         ephemeris.era_start, ephemeris.era_rate, ephemeris.node_step_s, ephemeris.intermediate.ctypes.data,
         nine(*bodies.inertia[0]), nine(*bodies.inertia_inv[0]), three(*bodies.residual[0]),
         flight.parameters[0][0], flight.actuators.limit[0], bodies.gravity_gradient[0],
-        field.basis.degree, field.basis.order, len(ephemeris.intermediate), flight.stepping.hold,
+        field.basis.degree, field.basis.order, len(ephemeris.intermediate), flight.scenario.integrator.field_update == "step",
     )  # fmt: skip
 
 
