@@ -1,0 +1,81 @@
+"""The 1978 program's surroundings of the two masses, as a load for the plant: its own Earth, air and mass anomaly.
+
+    F / m = -(GM' - GM) x / r^3                                                     what GM' differs by      (1)
+          + J2 in the equator of the inertial axes                                                          (2)
+          - G dm (x - x_a) / |x - x_a|^3,  G dm = dg (R_E pi / 180)^2 / (2 pi)       gravity anomaly           (3)
+          - C_d A rho0 exp(-(h - h0) / H) |v| v / (2 m),  h = r - R_E                drag                      (4)
+
+The air does not turn with the Earth, and the anomaly does not either: the annex computes both in inertial axes. (3) is the
+pull of a point that would give dg [1 Gal = 0.01 m/s^2] as a disc of one square degree does; the annex names its input and
+not its formula.
+
+GM' = 3.986013e14 m^3/s^2 and R_E = 6378.0 km are not printed. They follow from the printed orbital rate and tension of the
+spinning test case, both of which they give to the tenth digit, and no other common pair does.
+"""
+
+from __future__ import annotations
+
+from math import exp, pi, sqrt
+
+import numpy as np
+from numba import njit
+
+from fieldline.constants import EARTH_GM_M3_S2
+from fieldline.frames.vectors import add, axpy, dot, norm, scale, sub
+
+GM_M3_S2 = 3.986013e14
+EARTH_RADIUS_M = 6378.0e3
+J2 = 1.08263e-3
+MGAL_M_S2 = 1e-5
+NO_AIR = {"drag_area_m2": 0.0, "density_kg_m3": 0.0, "reference_height_m": 0.0, "scale_height_m": 1.0}
+NO_ANOMALY = {"anomaly_mgal": 0.0, "anomaly_x_m": EARTH_RADIUS_M, "anomaly_y_m": 0.0, "anomaly_z_m": 0.0}
+
+
+@njit(cache=True)
+def oblateness(place, j2):
+    """Acceleration [m/s^2] of J2 at a place (tuple) [m]; the pole is z."""
+    square = dot(place, place)
+    size = 1.5 * j2 * GM_M3_S2 * EARTH_RADIUS_M * EARTH_RADIUS_M / (square * square * sqrt(square))
+    polar = 5.0 * place[2] * place[2] / square
+    return (size * (polar - 1.0) * place[0], size * (polar - 1.0) * place[1], size * (polar - 3.0) * place[2])
+
+
+@njit(cache=True)
+def anomaly_pull(place, anomaly_place, anomaly):
+    """Acceleration [m/s^2] of (3) of an anomaly dg [m/s^2] at a point of the ground."""
+    away = sub(place, anomaly_place)
+    degree = EARTH_RADIUS_M * pi / 180.0
+    return scale(-anomaly * degree * degree / (2.0 * pi * norm(away) ** 3), away)
+
+
+@njit(cache=True)
+def drag(place, velocity, area, density, reference, scale_height):
+    """Force [N] of (4); `area` is C_d A [m^2]."""
+    height = sqrt(dot(place, place)) - EARTH_RADIUS_M
+    push = 0.5 * area * density * exp(-(height - reference) / scale_height)
+    return scale(-push * norm(velocity), velocity)
+
+
+@njit(cache=True)
+def surroundings_of_1978(t, state, parameters):
+    """Force [N] and torque (none) on a body: (1) to (4), a compiled load of the user's. `load_parameters` gives parameters."""
+    place, velocity = (state[0], state[1], state[2]), (state[3], state[4], state[5])
+    mass, square = parameters[0], dot(place, place)
+    pull = scale(-(GM_M3_S2 - EARTH_GM_M3_S2) / (square * sqrt(square)), place)  # (1)
+    if parameters[1] != 0.0:
+        pull = add(pull, oblateness(place, parameters[1]))  # (2)
+    if parameters[2] != 0.0:
+        there = (parameters[3], parameters[4], parameters[5])
+        pull = add(pull, anomaly_pull(place, there, MGAL_M_S2 * parameters[2]))  # (3)
+    force = scale(mass, pull)
+    if parameters[6] != 0.0:
+        push = drag(place, velocity, parameters[6], parameters[7], parameters[8], parameters[9])
+        force = axpy(1.0, push, force)  # (4)
+    out = np.zeros(6)
+    out[0], out[1], out[2] = force
+    return out
+
+
+def load_parameters(mass_kg: float, *, j2: float = 0.0, anomaly=None, air=None) -> dict[str, float]:
+    """The parameters of `surroundings_of_1978`, in its order; anomaly and air as NO_ANOMALY and NO_AIR, or None."""
+    return {"mass_kg": mass_kg, "j2": j2} | (anomaly or NO_ANOMALY) | (air or NO_AIR)
