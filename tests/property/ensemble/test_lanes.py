@@ -65,7 +65,7 @@ def test_runs_of_different_satellites_in_one_block_are_those_of_the_plant():
 
 
 def test_a_rate_that_falls_ends_a_run_when_the_plant_says_so():
-    event = [{"kind": "rate", "rate_deg_s": 9.5, "direction": "falling", "stop": True}]
+    event = [{"kind": "rate", "rate_deg_s": 9.85, "direction": "falling", "stop": True}]
     flight = Flight(scenario(event=event))
     progress = in_lanes(flight)
     flight.fly()
@@ -112,5 +112,5 @@ def test_runs_that_share_too_little_are_not_alike():
     first = Flight(scenario())
     assert alike(first, Flight(scenario(**{"body.0.rate_deg_s": [1.0, 1.0, 1.0]})))
     assert not alike(first, Flight(scenario(**{"time.start_utc": "2026-03-02T00:00:00Z"})))
-    assert not alike(first, Flight(scenario(**{"environment.field_degree": 5})))
+    assert not alike(first, Flight(scenario(**{"environment.field_degree": 3})))
     assert LANES > 1

@@ -13,7 +13,7 @@ from fieldline.simulate.outcome import RunInterrupted
 
 pytestmark = pytest.mark.kernels
 
-SCENARIO = Scenario.from_dict(TABLE, "scenario").replace(**{"time.duration_s": 20.0, "time.output_step_s": 10.0})
+SCENARIO = Scenario.from_dict(TABLE, "scenario").replace(**{"time.duration_s": 4.0, "time.output_step_s": 2.0})
 RATES = {"body.0.rate_deg_s": Uniform([-5.0, -5.0, -5.0], [5.0, 5.0, 5.0])}
 
 
@@ -33,8 +33,8 @@ def test_lanes_and_the_plant_give_one_result():
 
 
 def test_runs_that_an_event_stops_share_the_times_of_all():
-    event = [{"kind": "rate", "rate_deg_s": 9.85, "direction": "falling", "stop": True}]
-    stopped = SCENARIO.replace(event=event)
+    event = [{"kind": "rate", "rate_deg_s": 9.87, "direction": "falling", "stop": True}]
+    stopped = SCENARIO.replace(event=event, **{"time.duration_s": 20.0})
     lanes, plant = (simulate_many(stopped, 2, lanes=on) for on in (True, False))
     assert lanes.seconds.values.tolist() == plant.seconds.values.tolist()
     np.testing.assert_allclose(lanes.ended_s, plant.ended_s, atol=5e-3)
