@@ -85,9 +85,18 @@ def test_reference_layers_have_their_table_and_nearly_meet():
         )
 
 
-def test_layers_hold_below_and_fall_above():
+def test_an_exponential_may_refer_to_any_height():
+    low, high = (
+        atmosphere_model("exponential", density_kg_m3=1e-12 * np.exp(-h / 60e3), height_m=400e3 + h, scale_height_m=60e3)
+        for h in (-200e3, 200e3)
+    )
+    assert density_kernel(above(350e3), SUN_E, 0.0, high) == pytest.approx(
+        density_kernel(above(350e3), SUN_E, 0.0, low), rel=1e-9
+    )
+
+
+def test_layers_fall_on_above_the_last():
     air = atmosphere_model("layered")
-    assert density_kernel(above(-5e3), SUN_E, 0.0, air) == 1.225
     high = density_kernel(above(1500e3), SUN_E, 0.0, air)
     assert high == pytest.approx(3.019e-15 * np.exp(-500.0 / 268.0), rel=1e-6)
 

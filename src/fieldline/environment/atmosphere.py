@@ -5,8 +5,9 @@
 
 "none" is a vacuum; "exponential" is (1) with one layer, given by the user; "layered" is (1) with the 28 layers of the
 usual reference (US Standard Atmosphere 1976 to 25 km, CIRA-72 for an exospheric temperature of 1,000 K above); "msis" is
-(2), a table of NRLMSIS 2.1 made by `environment.msis`. Heights are geodetic, over WGS84. Below its lowest height a model
-holds that height's density; above its highest, density goes on falling exponentially.
+(2), a table of NRLMSIS 2.1 made by `environment.msis`. Heights are geodetic, over WGS84. Below its lowest height the table
+holds that height's density; layers go on growing, so that an exponential may refer to any height. Above the highest, density
+goes on falling exponentially.
 
 The real density departs from any of these: from MSIS by 15 % in the mean and by 100 % in storms; from "layered", which
 knows no Sun, MSIS itself differs by a factor of 4 either way at 400 km and of 7 at 600 km over a solar cycle.
@@ -99,8 +100,6 @@ def _layers(height, atmosphere):
     while k > 0 and height < atmosphere.base_m[k]:
         k -= 1
     above = height - atmosphere.base_m[k]
-    if k == 0 and above < 0.0:
-        above = 0.0
     return atmosphere.density[k] * exp(-above / atmosphere.scale_m[k])
 
 
