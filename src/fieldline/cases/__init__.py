@@ -18,6 +18,13 @@ CASES = {
     "ames_1961_dump": ("ames_1961", "dump"),
     "ames_1961_coil": ("ames_1961", "coil"),
     "ames_1961_observatory": ("ames_1961", "observatory"),
+    "sao_1982_stationary": ("sao_1982", "stationary"),
+    "sao_1982_stability": ("sao_1982", "stability"),
+    "sao_1982_stability_chart": ("sao_1982", "stability_chart"),
+    "sao_1982_spin": ("sao_1982", "spin"),
+    "sao_1982_thruster": ("sao_1982", "thruster"),
+    "sao_1982_annex": ("sao_1982", "annex_run"),
+    "tp3123": ("tp3123", "run"),
 }
 
 

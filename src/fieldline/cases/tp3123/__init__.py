@@ -1,0 +1,13 @@
+"""Polites (1991): bandpass filters on magnetometer signals to reconstruct a tethered satellite's skiprope, NASA TP-3123.
+
+run           section IV: the signals of a flight, corrected and filtered
+fly           the flight alone, at 16 Hz: orbit, field, attitude, magnetometer
+six_dipoles   the field model of its program
+listed_gain   gain and phase as its program prints them
+"""
+
+from fieldline.cases.tp3123.dipoles import six_dipoles
+from fieldline.cases.tp3123.flight import Flight, fly, true_cone
+from fieldline.cases.tp3123.reconstruction import listed_gain, run
+
+__all__ = ["run", "fly", "Flight", "true_cone", "six_dipoles", "listed_gain"]

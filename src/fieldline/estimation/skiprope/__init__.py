@@ -1,0 +1,73 @@
+"""Coning from a magnetometer and a known field: skiprope of a tethered satellite, nutation of a spinning one.
+
+    geometry = field_geometry(field_c)                           the known field in the axes of the cone
+    corrected = corrected_signals(field_b, geometry)             three harmonics
+    tuning = tune(seconds, corrected, 0.005)                     bandpass filters, tuned to what they show
+    reading = read_cone(seconds, tuning.filtered, geometry, tuning.frequency_hz)
+    tether_azimuth(reading, seconds), midpoint_deflection(reading.amplitude_rad, length_m)
+
+Source: Polites (1991), NASA TP-3123.
+"""
+
+from fieldline.estimation.skiprope.bandpass import (
+    FilterState,
+    bandpass,
+    bandpass_response,
+    filter_bank,
+    group_delay_s,
+    lowpass,
+    settling_time_s,
+)
+from fieldline.estimation.skiprope.coning import axes_about, despun
+from fieldline.estimation.skiprope.cycles import extremes, fit_cycles, zero_crossings
+from fieldline.estimation.skiprope.position import (
+    in_field_plane,
+    midpoint_deflection,
+    midpoint_position,
+    next_in_plane,
+    tether_azimuth,
+    tilt_azimuth,
+)
+from fieldline.estimation.skiprope.reading import ConeReading, FieldKnowledge, read_cone, with_delayed_azimuth
+from fieldline.estimation.skiprope.signals import (
+    ORBITAL_FROM_CONE,
+    FieldGeometry,
+    corrected_signals,
+    field_geometry,
+    field_vector,
+    yaw_signal,
+)
+from fieldline.estimation.skiprope.tuning import Tuning, tune
+
+__all__ = [
+    "field_geometry",
+    "field_vector",
+    "FieldGeometry",
+    "ORBITAL_FROM_CONE",
+    "corrected_signals",
+    "yaw_signal",
+    "bandpass",
+    "lowpass",
+    "filter_bank",
+    "FilterState",
+    "bandpass_response",
+    "group_delay_s",
+    "settling_time_s",
+    "tune",
+    "Tuning",
+    "zero_crossings",
+    "extremes",
+    "fit_cycles",
+    "read_cone",
+    "with_delayed_azimuth",
+    "ConeReading",
+    "FieldKnowledge",
+    "tilt_azimuth",
+    "tether_azimuth",
+    "midpoint_deflection",
+    "midpoint_position",
+    "in_field_plane",
+    "next_in_plane",
+    "axes_about",
+    "despun",
+]
