@@ -7,7 +7,7 @@ detumbling of fast-tumbling picosatellites, IAC-18-C1.3.11 (the satellite is Del
 
 What is assumed here, the paper not being at hand in full:
 - rates even within 180 deg/s on each axis, or (`--rates full`) 180 deg/s of either sign, or (`--rates normal`, four times
-  the work) normal with that standard deviation: only normal ones have a median of 0.94 of the mean, as the published times;
+  the work) normal with that standard deviation;
 - the place in the orbit and the node even, the attitude as the scenario starts it;
 - a box of 0.6 kg, 50 x 50 x 178 mm, its mass spread evenly;
 - a near-polar orbit, as sun-synchronous ones are, 96.85 deg;

@@ -31,7 +31,12 @@ _HOMES = {
     "Calibration": "fieldline.estimation.calibration",
     "estimate_attitude": "fieldline.estimation",
     "write_report": "fieldline.report",
+    "electrodynamic_map": "fieldline.control.electrodynamic",
     "simulate": "fieldline.simulate",
+    "simulate_many": "fieldline.simulate",
+    "Normal": "fieldline.simulate",
+    "Uniform": "fieldline.simulate",
+    "Choice": "fieldline.simulate",
     "Scenario": "fieldline.simulate.scenario",
     "FieldlineError": "fieldline.errors",
     "InputError": "fieldline.errors",
@@ -53,7 +58,12 @@ __all__ = [
     "Calibration",
     "estimate_attitude",
     "write_report",
+    "electrodynamic_map",
     "simulate",
+    "simulate_many",
+    "Normal",
+    "Uniform",
+    "Choice",
     "Scenario",
     "FieldlineError",
     "InputError",
@@ -61,6 +71,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from fieldline.control.electrodynamic import electrodynamic_map
     from fieldline.environment import eclipse, field_gradient, field_model, magnetic_field, sun_direction_i
     from fieldline.errors import FieldlineError, InputError, NoEstimateError
     from fieldline.estimation import estimate_attitude
@@ -68,6 +79,7 @@ if TYPE_CHECKING:
     from fieldline.estimation.calibration import Calibration
     from fieldline.orbit import orbit_from_positions, read_orbit
     from fieldline.report import write_report
+    from fieldline.simulate.ensemble import Choice, Normal, Uniform, simulate_many
     from fieldline.simulate.run import simulate
     from fieldline.simulate.scenario import Scenario
     from fieldline.telemetry import Telemetry, read_telemetry

@@ -7,7 +7,8 @@ returns a new array may be called from them, nor may one array be assigned to an
 does return a new array (a user's law), that call sits in a function of its own, which is `counting`.
 
 `inner` is for kernels that compiled code alone calls: the way in from Python, which takes every array of every record
-apart, costs some two seconds of compilation each.
+apart, costs some two seconds of compilation each. Called from Python all the same, such a kernel crashes the process: a
+test that wants one wraps it.
 
 `merged` is for inner kernels with one caller that take many records: passing five hundred numbers costs more than what
 they do with them, so their code is put where it is called (7.0 against 4.0 microseconds a step of the plant's loop).

@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fieldline.simulate.ensemble import Choice, Normal, Uniform, simulate_many
     from fieldline.simulate.free_flight import FreeFlight, fly_free
     from fieldline.simulate.magnetometer import Magnetometer
     from fieldline.simulate.outcome import RunError, RunInterrupted
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "simulate": "fieldline.simulate.run",
+    "simulate_many": "fieldline.simulate.ensemble",
+    "Normal": "fieldline.simulate.ensemble",
+    "Uniform": "fieldline.simulate.ensemble",
+    "Choice": "fieldline.simulate.ensemble",
     "Scenario": "fieldline.simulate.scenario.scenario",
     "RunError": "fieldline.simulate.outcome",
     "RunInterrupted": "fieldline.simulate.outcome",
@@ -29,7 +34,19 @@ _HOMES = {
     "Magnetometer": "fieldline.simulate.magnetometer",
 }
 
-__all__ = ["simulate", "Scenario", "RunError", "RunInterrupted", "FreeFlight", "Magnetometer", "fly_free"]
+__all__ = [
+    "simulate",
+    "simulate_many",
+    "Normal",
+    "Uniform",
+    "Choice",
+    "Scenario",
+    "RunError",
+    "RunInterrupted",
+    "FreeFlight",
+    "Magnetometer",
+    "fly_free",
+]
 
 
 def __getattr__(name: str) -> Any:
