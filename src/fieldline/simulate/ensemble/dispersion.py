@@ -47,7 +47,7 @@ class Uniform:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of some values, all alike."""
+    """One of some values, each as likely, in the unit of the key that it is drawn for."""
 
     values: tuple[Any, ...]
 
