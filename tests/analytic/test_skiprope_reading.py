@@ -142,6 +142,16 @@ def test_retuning_says_when_it_stopped_early():
     assert not tuning.converged and len(tuning.passes) == 1
 
 
+@pytest.mark.parametrize("end_s", [1500, 2000, 3000, 4000])
+def test_short_records_say_how_little_they_know(end_s):
+    """The nominal run of TP-3123 cut short: the field turns under the filter, by up to 2 s of the period."""
+    case = run().sel(seconds=slice(0, end_s))
+    known = FieldGeometry(*(case[f"{k}"].values for k in ("field_assumed_tesla", "elevation_assumed_rad", "azimuth_assumed_rad")))
+    reading = read_cone(case.seconds.values, case.filtered.values, known, HZ)
+    assert abs(reading.frequency_hz - HZ) < 1.5 * reading.frequency_std_hz
+    assert reading.frequency_std_hz > 1.5e-5 * 2000.0 / end_s
+
+
 def test_records_too_short_are_refused():
     short = SECONDS < 350.0
     with pytest.raises(NoEstimateError, match="settle"):

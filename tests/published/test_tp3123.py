@@ -198,7 +198,7 @@ def test_period(nominal):
     assert intervals.mean() == pytest.approx(199.84, abs=0.005)
     assert intervals.std() == pytest.approx(10.1, abs=0.06)
     by_sines = read(nominal)
-    assert abs(by_sines.period_s - 200.0) < 2.0 * by_sines.frequency_std_hz * 200.0**2 < 1.0
+    assert abs(by_sines.period_s - 200.0) < by_sines.frequency_std_hz * 200.0**2 < 0.6
 
 
 def test_sense(nominal):

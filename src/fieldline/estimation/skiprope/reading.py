@@ -9,7 +9,8 @@ Each is read cycle by cycle, from a sine through the cycle or from its highest a
 deviation of a single cycle:
 
     amplitude   the scatter of the cycles, the ellipse, the known field's scale error, and tan(EL) times its elevation error
-    frequency   the scatter of the phases (by eye: of the crossings of zero) about even ones, over the record's length
+    frequency   the scatter of the phases (by eye: of the crossings of zero) about even ones and the ellipse, over the
+                record's length, and what taking the azimuth a group delay earlier would change
     time        the scatter about its line of (azimuth at the maximum - w t_max), and the ellipse, over w
     plane       the same, and the azimuth error of the known field
 
@@ -40,7 +41,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.errors import InputError, NoEstimateError
-from fieldline.estimation.skiprope.bandpass import as_series, positive, settling_time_s
+from fieldline.estimation.skiprope.bandpass import as_series, group_delay_s, settling_time_s
 from fieldline.estimation.skiprope.cycles import Crossings, Cycles, extremes, fit_cycles, zero_crossings
 from fieldline.estimation.skiprope.signals import FieldGeometry
 from fieldline.estimation.skiprope.spectrum import strongest_line
@@ -117,52 +118,89 @@ def read_cone(
         raise InputError(f"filtered must hold three signals (n, 3); got {rows.shape}.")
     if by not in READ_BY:
         raise InputError(f"by must be one of {', '.join(READ_BY)}; got {by!r}.")
-    positive("filter_frequency_hz", filter_frequency_hz)
+    delay = float(group_delay_s(filter_frequency_hz, filter_frequency_hz, damping))
     settle = settling_time_s(filter_frequency_hz, damping) if settle_s is None else float(settle_s)
     kept = times >= times[0] + settle if len(times) else np.zeros(0, dtype=bool)
-    times, rows = times[kept], rows[kept]
-    known = FieldGeometry(*(np.asarray(column)[kept] for column in geometry))
-    if len(times) < 4:
+    if kept.sum() < 4:
         raise NoEstimateError(f"the record is shorter than the {settle:.0f} s that the filter settles in; give a longer one.")
-    frequency, frequency_std, _ = frequency_of(times, rows[:, 2], filter_frequency_hz)
-    if by == "extremes":
-        crossings = zero_crossings(times, rows[:, 2])
-        frequency, frequency_std = crossing_frequency(crossings)
-        at, value = extremes(times, rows[:, 2], crossings)
-    cycles = fit_cycles(times, rows, frequency)
-    sense, lead, lead_std, agreement = sense_of(cycles.phasor)
-    if by == "sine":
-        size = np.abs(cycles.phasor[:, 2])
-        maximum = cycles.middle_s - np.angle(cycles.phasor[:, 2]) / (2.0 * np.pi * frequency)
-        amplitude, misfit = size, cycles.ripple[:, 2]
-    else:
-        size = np.abs(value)
-        maximum, amplitude, misfit = at[value > 0.0], value[value > 0.0], np.median(cycles.ripple[:, 2])
-    ellipse = ellipse_of(cycles.phasor)
-    azimuth = np.interp(maximum - azimuth_delay_s, times, np.unwrap(known.azimuth_rad))
-    scatter, drift = _plane_scatter(maximum, azimuth, (sense or 1) * frequency, misfit / np.mean(size))
-    cone_hz = (sense or 1) * frequency + (drift if sense and by == "sine" else 0.0)
+    turning = Turning(times, np.unwrap(np.asarray(geometry.azimuth_rad, dtype=float)))
+    marks = _marks(times[kept], rows[kept], filter_frequency_hz, by)
+    sense, lead, lead_std, agreement = sense_of(marks.phasor)
+    ellipse = ellipse_of(marks.phasor)
+    signed_hz = (sense or 1) * marks.frequency_hz
+    azimuth = turning.at(marks.maximum_s - azimuth_delay_s)
+    scatter, drift = _plane_scatter(marks.maximum_s, azimuth, signed_hz, marks.misfit / np.mean(marks.size))
     plane_std = np.hypot(scatter, np.arcsin(ellipse) / np.sqrt(2.0))
-    field_share = np.hypot(knowledge.scale, np.tan(np.interp(maximum, times, known.elevation_rad)) * knowledge.elevation_rad)
-    share = np.sqrt(field_share**2 + 0.5 * ellipse**2)
-    cycle_std = np.hypot(_scatter(size, misfit), share * amplitude)
+    late = turning.rate_hz(marks.maximum_s) - turning.rate_hz(marks.maximum_s - delay)
+    swung = np.arcsin(ellipse) / (2.0 * np.pi * (times[-1] - times[0] - settle))
+    elevation = np.interp(marks.maximum_s, times, geometry.elevation_rad)
+    share = np.sqrt(knowledge.scale**2 + (np.tan(elevation) * knowledge.elevation_rad) ** 2 + 0.5 * ellipse**2)
+    cycle_std = np.hypot(_scatter(marks.size, marks.misfit), share * marks.amplitude)
+    count = len(marks.maximum_s)
     return ConeReading(
-        amplitude_rad=float(np.mean(size)),
+        amplitude_rad=float(np.mean(marks.size)),
         amplitude_std_rad=float(np.sqrt(np.mean(cycle_std**2))),
-        frequency_hz=cone_hz,
-        frequency_std_hz=frequency_std,
+        frequency_hz=float(signed_hz + (drift if sense and by == "sine" else 0.0)),
+        frequency_std_hz=float(np.sqrt(marks.frequency_std_hz**2 + swung**2 + late**2)),
         sense=sense,
         lead_rad=lead,
         lead_std_rad=lead_std,
         agreement=agreement,
         ellipse=ellipse,
-        maximum_s=maximum,
-        maximum_std_s=np.full(len(maximum), plane_std / (2.0 * np.pi * frequency)),
+        maximum_s=marks.maximum_s,
+        maximum_std_s=np.full(count, plane_std / (2.0 * np.pi * marks.frequency_hz)),
         azimuth_rad=azimuth,
-        azimuth_std_rad=np.full(len(maximum), np.hypot(plane_std, knowledge.azimuth_rad)),
-        cycle_amplitude_rad=amplitude,
+        azimuth_std_rad=np.full(count, np.hypot(plane_std, knowledge.azimuth_rad)),
+        cycle_amplitude_rad=marks.amplitude,
         cycle_amplitude_std_rad=cycle_std,
     )
+
+
+class Turning(NamedTuple):
+    """The known field's azimuth (n,) [rad], without jumps, at times (n,) [s]."""
+
+    seconds: np.ndarray
+    azimuth_rad: np.ndarray
+
+    def at(self, seconds) -> np.ndarray:
+        """The azimuth [rad] at times [s]."""
+        return np.interp(seconds, self.seconds, self.azimuth_rad)
+
+    def rate_hz(self, seconds) -> float:
+        """[Hz] by which it turns in the mean over times (m,) [s]; zero for a single one."""
+        if len(seconds) < 2:
+            return 0.0
+        return float(np.polyfit(seconds - seconds[0], self.at(seconds), 1)[0] / (2.0 * np.pi))
+
+
+class Marks(NamedTuple):
+    """What is marked on C3, by sines or by eye."""
+
+    frequency_hz: float  # of C3
+    frequency_std_hz: float
+    phasor: np.ndarray  # (m, 3) of whole cycles
+    maximum_s: np.ndarray  # (m,)
+    amplitude: np.ndarray  # (m,) at the maxima
+    size: np.ndarray  # amplitudes that the mean is of: by eye of minima too
+    misfit: np.ndarray  # (m,) of the sines, or their median
+
+
+def _marks(times, rows, near_hz: float, by: str) -> Marks:
+    """The marks on settled signals (n, 3)."""
+    frequency, frequency_std, _ = frequency_of(times, rows[:, 2], near_hz)
+    if by == "extremes":
+        crossings = zero_crossings(times, rows[:, 2])
+        frequency, frequency_std = crossing_frequency(crossings)
+    cycles = fit_cycles(times, rows, frequency)
+    if not len(cycles.middle_s):
+        raise NoEstimateError("no whole cycle of the cone without a gap is left to be read; give a longer record.")
+    z, ripple = cycles.phasor[:, 2], cycles.ripple[:, 2]
+    if by == "extremes":
+        at, value = extremes(times, rows[:, 2], crossings)
+        high = value > 0.0
+        return Marks(frequency, frequency_std, cycles.phasor, at[high], value[high], np.abs(value), np.median(ripple))
+    maximum = cycles.middle_s - np.angle(z) / (2.0 * np.pi * frequency)
+    return Marks(frequency, frequency_std, cycles.phasor, maximum, np.abs(z), np.abs(z), ripple)
 
 
 def frequency_of(seconds, signal, near_hz: float) -> tuple[float, float, Cycles]:
