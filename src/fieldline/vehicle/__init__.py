@@ -1,5 +1,6 @@
 """What flies: bodies with their mass, inertia, loads and actuators, and the lines between them. Frozen records only."""
 
+from fieldline.vehicle.conductor import Conductor
 from fieldline.vehicle.hysteresis_rod import HysteresisRod
 from fieldline.vehicle.line import Line
 from fieldline.vehicle.magnetorquer import Magnetorquer
@@ -9,4 +10,15 @@ from fieldline.vehicle.user_load import UserLoad
 from fieldline.vehicle.vehicle import Vehicle
 from fieldline.vehicle.wheel import Wheel
 
-__all__ = ["Vehicle", "Magnetorquer", "Wheel", "Thruster", "HysteresisRod", "Drag", "SolarPressure", "UserLoad", "Line"]
+__all__ = [
+    "Vehicle",
+    "Magnetorquer",
+    "Wheel",
+    "Thruster",
+    "HysteresisRod",
+    "Drag",
+    "SolarPressure",
+    "UserLoad",
+    "Line",
+    "Conductor",
+]

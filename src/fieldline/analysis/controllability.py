@@ -1,0 +1,165 @@
+"""Which motions a vehicle's controls reach: at an instant, over an orbit, and whether it can stay where it is sent.
+
+At an instant, by Popov, Belevitch and Hautus: dx/dt = F x + G u is controllable if for every eigenvalue s of F
+
+    smin [s I - F, G] > 0                                                                           (1)
+
+The smallest singular value is the margin: a perturbation of that size in (F, G) loses a motion. It has meaning only in
+scaled numbers: time in 1/rate, states over their sizes, each control by its own greatest effect (a column of length 1).
+Ranks of [G, F G, ..., F^(n-1) G] in SI lose all digits at twelve states.
+
+Over a period, by the Gramian of the periodic system,
+
+    W = integral over a period of X(T, t) G G' X(T, t)' dt                                          (2)
+
+whose eigenvalues are the squares of how far a control of unit energy goes: none may be zero.
+
+Steady-state controllability (Lawrence, 1992): every reference r of the outputs can be held by constant controls,
+
+    rank [[F, G], [H, 0]] = n + p                                                                   (3)
+
+Conductors alone never have it: B . force = 0 leaves one row of G dependent on the others.
+
+Sources: Hautus (1969), Indagationes Mathematicae 31:443 (1); Kalman, Ho and Narendra (1963), Contributions to Differential
+Equations 1:189 (2); Davison and Wang (1974), IEEE Trans. Automatic Control 19:643 (3); Lawrence (1992), AFIT/GA/ENY/92D-05.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from fieldline.analysis.floquet import as_ring, check_period
+from fieldline.control.periodic_system import transitions
+from fieldline.errors import InputError
+
+THRESHOLD = 1e-6  # of the margin (1) in scaled numbers
+RANK_TOLERANCE = 1e-10  # of the largest singular value
+
+
+class Instant(NamedTuple):
+    """Controllability at instants, arrays (...)."""
+
+    controllable: np.ndarray
+    margin: np.ndarray  # smallest singular value of (1)
+    eigenvalue: np.ndarray  # over rate, where it is
+    motion: np.ndarray  # (..., n) direction of the state that is hardest to move, scaled
+    input_values: np.ndarray  # (..., min(n, m)) singular values of the scaled G
+
+
+class Orbit(NamedTuple):
+    """Controllability over a period."""
+
+    controllable: bool
+    margin: float  # least over greatest reach: the root of the eigenvalues' ratio
+    reach: np.ndarray  # (n,) roots of the eigenvalues of (2), scaled, least first
+    motion: np.ndarray  # (n,) the direction of the least
+
+
+class Steady(NamedTuple):
+    """Steady-state controllability."""
+
+    controllable: bool
+    margin: float  # smallest over largest singular value of (3), scaled
+    lost: np.ndarray  # (p,) the reference that cannot be held, or is hardest to hold, scaled to length 1
+
+
+def orbital_scale(mean_motion_rad_s: float, angle_rad: float = 0.01) -> np.ndarray:
+    """(12,) sizes of the states of `mechanics.relative_motion`: a metre, and angle_rad, their rates times n."""
+    return np.repeat([1.0, angle_rad], 6) * np.tile([1.0, mean_motion_rad_s], 6)
+
+
+def scaled(F, G, rate: float, scale) -> tuple[np.ndarray, np.ndarray]:
+    """F and G (..., n, m) in time 1/rate and states over scale (n,); columns of G of length 1, or zero."""
+    size = np.broadcast_to(np.asarray(scale, dtype=float), (np.shape(F)[-1],))
+    f, g = np.asarray(F) * size / size[:, None] / rate, np.asarray(G) / size[:, None] / rate
+    length = np.linalg.norm(g, axis=-2, keepdims=True)
+    return f, np.divide(g, length, out=np.zeros_like(g), where=length > 1e-14 * length.max(initial=0.0))
+
+
+def controllability_now(F, G, *, rate: float, scale=1.0, threshold: float = THRESHOLD) -> Instant:
+    """The test (1) of F (n, n) and G (..., n, m) at each instant."""
+    f, g = scaled(F, G, rate, scale)
+    eigenvalues = _upper(np.linalg.eigvals(f))
+    n = f.shape[0]
+    lead = g.shape[:-2]
+    pencil = (eigenvalues[:, None, None] * np.eye(n) - f).reshape((len(eigenvalues), *(1,) * len(lead), n, n))
+    pencil = np.broadcast_to(pencil, (len(eigenvalues), *lead, n, n))
+    both = np.concatenate([pencil, np.broadcast_to(g, (len(eigenvalues), *g.shape))], axis=-1)
+    left, values, _ = np.linalg.svd(both, full_matrices=False)
+    least = values[..., -1]
+    worst = least.argmin(axis=0)
+    at = (worst, *np.indices(lead)) if lead else worst
+    margin = least[at]
+    motion = left[at][..., -1]
+    return Instant(margin > threshold, margin, eigenvalues[worst], motion, np.linalg.svd(g, compute_uv=False))
+
+
+def controllability_over(F, G, period_s: float, *, rate: float, scale=1.0, threshold: float = THRESHOLD) -> Orbit:
+    """The Gramian (2) of F (n, n) or (N, n, n) and G (N, n, m) at N equal steps of a period, columns scaled as one."""
+    ring = as_ring("G", G, np.shape(F)[-1], np.shape(G)[-1])
+    period = check_period(period_s)
+    size = np.broadcast_to(np.asarray(scale, dtype=float), (np.shape(F)[-1],))
+    f = np.asarray(F) * size / size[:, None] / rate
+    g = ring / size[:, None] / rate
+    length = np.sqrt((g * g).sum(axis=1).mean(axis=0))
+    g = np.divide(g, length, out=np.zeros_like(g), where=length > 0.0)
+    steps = transitions(as_ring("F", f, count=len(g)), rate * period)
+    gramian, width = np.zeros((f.shape[-1],) * 2), rate * period / len(g)
+    for k in range(len(g)):
+        ends = (g[k] @ g[k].T, g[(k + 1) % len(g)] @ g[(k + 1) % len(g)].T)
+        gramian = steps[k] @ (gramian + 0.5 * width * ends[0]) @ steps[k].T + 0.5 * width * ends[1]
+    values, vectors = np.linalg.eigh(0.5 * (gramian + gramian.T))
+    reach = np.sqrt(np.maximum(values, 0.0))
+    margin = float(reach[0] / reach[-1]) if reach[-1] > 0.0 else 0.0
+    return Orbit(margin > threshold, margin, reach, vectors[:, 0])
+
+
+def steady_state(F, G, H, *, rate: float, scale=1.0) -> Steady:
+    """The test (3) of F (n, n), G (n, m), H (p, n)."""
+    f, g = scaled(F, G, rate, scale)
+    size = np.broadcast_to(np.asarray(scale, dtype=float), (f.shape[0],))
+    h = np.asarray(H) * size
+    h = h / np.linalg.norm(h, axis=1, keepdims=True)
+    left, values, _ = np.linalg.svd(np.block([[f, g], [h, np.zeros((h.shape[0], g.shape[1]))]]))
+    rows = f.shape[0] + h.shape[0]
+    values = np.concatenate([values, np.zeros(rows - len(values))])
+    lost = left[f.shape[0] :, rows - 1]
+    return Steady(bool(values[-1] > RANK_TOLERANCE * values[0]), float(values[-1] / values[0]), lost / np.linalg.norm(lost))
+
+
+def removable(F, G, lost: int, *, rate: float, scale=1.0, of: Sequence[int] | None = None, threshold: float = THRESHOLD):
+    """Which sets of `lost` controls can fail: (subset, least margin over the instants of G (..., n, m)) for all sets.
+
+    `of` : columns that may fail, all by default. A set may be lost if its margin is above the threshold.
+    """
+    columns = range(np.shape(G)[-1]) if of is None else of
+    count = sum(1 for _ in _subsets(columns, lost))
+    if count == 0 or lost >= np.shape(G)[-1]:
+        raise InputError(f"lost must be between 1 and {np.shape(G)[-1] - 1} controls; got {lost}.")
+    found = []
+    for subset in _subsets(columns, lost):
+        kept = [k for k in range(np.shape(G)[-1]) if k not in subset]
+        instant = controllability_now(F, np.asarray(G)[..., kept], rate=rate, scale=scale, threshold=threshold)
+        found.append((subset, float(np.min(instant.margin))))
+    return found
+
+
+def words_of(motion, names: Sequence[str], most: int = 3) -> str:
+    """The states in which a motion is largest, by name, for a message."""
+    size = np.abs(np.asarray(motion))
+    order = np.argsort(-size)[:most]
+    return ", ".join(names[k] for k in order if size[k] > 0.2 * size.max())
+
+
+def _subsets(columns: Sequence[int], lost: int) -> Iterator[tuple[int, ...]]:
+    """Sets of `lost` columns."""
+    return combinations(columns, lost) if lost >= 1 else iter(())
+
+
+def _upper(eigenvalues: np.ndarray) -> np.ndarray:
+    """One of each conjugate pair, since both give the same singular values."""
+    return eigenvalues[eigenvalues.imag >= -1e-9 * np.abs(eigenvalues).max(initial=1.0)]

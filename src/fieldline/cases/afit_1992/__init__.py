@@ -1,0 +1,23 @@
+"""Lawrence (1992): an electromagnetically controlled precision orbital tracking vehicle, AFIT/GA/ENY/92D-05.
+
+vehicle           mass, inertia, poles and conductors of the tank with towers (appendix D)
+linear_model      F, G, H of the frozen instant (chapter 4)
+controllability   at instants of the orbit, with and without thruster, and which conductors may fail
+lqr               standoff, R-BAR, V-BAR and Z-BAR (appendix E)
+field             the dipole and IGRF-14 in the target's axes (appendix A)
+lost_field        where its parts vanish: the question of sections 4.1.3 and 6
+transfer          the climb that sizes the vertical conductors (chapter 5)
+
+Axes h: x up, y along the velocity, z along the orbit's normal (the thesis's c). The field's angle is u - thetag - lambda:
+argument of latitude, Greenwich's angle, longitude of the austral pole (-78.5, 111 deg).
+"""
+
+from fieldline.cases.afit_1992.approaches import lqr
+from fieldline.cases.afit_1992.field_in_orbit import field
+from fieldline.cases.afit_1992.field_lost import lost_field
+from fieldline.cases.afit_1992.frozen_model import linear_model
+from fieldline.cases.afit_1992.reach import controllability
+from fieldline.cases.afit_1992.tank import vehicle
+from fieldline.cases.afit_1992.transfer_orbit import transfer
+
+__all__ = ["vehicle", "linear_model", "controllability", "lqr", "field", "lost_field", "transfer"]
