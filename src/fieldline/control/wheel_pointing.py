@@ -6,8 +6,8 @@ is the torque of the wheels on the body: proportional and rate terms of (26) and
 wheels taken ahead, and the goal's own change of rate in body axes, a = -w x omega_t. Closed, theta obeys
 theta'' + 2 z w_n theta' + w_n^2 theta = 0 for small angles, axis by axis.
 
-With desaturation the coils' moment is (11), less the residual dipole if it is estimated, and its torque M x B is taken ahead:
-T of (34) less M x B, so that dumping does not disturb the pointing.
+With desaturation the coils' moment is (11), less the residual dipole if it is estimated, shortened to what the torquers can
+give; its torque M x B is taken ahead: T of (34) less M x B, so that dumping does not disturb the pointing.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fieldline.control.law import Law, Parameter, complete
 from fieldline.control.momentum import dump, packed_dump
 from fieldline.control.readings import field_known, finite3, lifted, wheel_momentum_b
 from fieldline.control.residual_dipole import packed_filter, packed_wheels, residual_estimate
-from fieldline.control.saturation import as_command
+from fieldline.control.saturation import as_command, shortened
 from fieldline.control.target import packed_target, pointing_error
 from fieldline.frames.matrices import matvec
 from fieldline.frames.vectors import add, axpy, cross, scale, sub
@@ -30,7 +30,8 @@ DAMPING = FREQUENCY + 1
 INERTIA = DAMPING + 1
 POINTING_SIZE = INERTIA + 9
 DUMP = POINTING_SIZE
-FILTER = DUMP + momentum.DUMP_SIZE
+MOMENT_MAX = DUMP + momentum.DUMP_SIZE
+FILTER = MOMENT_MAX + 3
 FILTER_MEMORY = momentum.MEMORY
 ZERO = (0.0, 0.0, 0.0)
 
@@ -74,9 +75,10 @@ def wheel_pointing_with_desaturation(t, measurement, memory, params):
     torque = pointing_torque(measurement, momentum_b, params)
     dipole, own_torque = residual_estimate(t, measurement, momentum_b, memory, FILTER_MEMORY, params, FILTER)
     dumping = dump(measurement, momentum_b, memory, 0, params, DUMP)
+    moment, _ = shortened(sub(dumping, dipole), params, MOMENT_MAX)
     if field_known(measurement):
-        torque = sub(torque, cross(dumping, lifted(measurement.field_b)))
-    moment, torque = sub(dumping, dipole), sub(torque, own_torque)
+        torque = sub(torque, cross(add(moment, dipole), lifted(measurement.field_b)))
+    torque = sub(torque, own_torque)
     command = np.empty(6)
     for j in range(3):
         command[j] = moment[j]
@@ -106,8 +108,8 @@ def _pack_desaturation(table, context) -> np.ndarray:
     law = "wheel-pointing-with-desaturation"
     values = complete(law, DESATURATION_PARAMETERS, table)
     filter_numbers = packed_filter(values, context, values["cancel_residual"])
-    pieces = (_packed_pointing(values, context), packed_dump(law, values, context), filter_numbers, packed_wheels(context))
-    return np.concatenate(pieces)
+    dumping = (packed_dump(law, values, context), np.asarray(context.moment_max_a_m2, dtype=float))
+    return np.concatenate([_packed_pointing(values, context), *dumping, filter_numbers, packed_wheels(context)])
 
 
 LAWS = (
