@@ -27,6 +27,7 @@ import numpy as np
 
 from fieldline.analysis.spinning_subsatellite.configuration import (
     SpinningSubsatellite,
+    four_angle_margin,
     spin_for_angle,
     stationary_angles,
 )
@@ -79,11 +80,11 @@ def _growth(kappa, theta):
     return np.where(stable, 0.0, fastest)
 
 
-def frequencies(body: SpinningSubsatellite, theta_rad: float) -> np.ndarray:
-    """The two angular frequencies [rad/s] of a stable theta0, the fast one (nutation) first; NaN where it is not stable."""
+def frequencies(body: SpinningSubsatellite, theta_rad) -> np.ndarray:
+    """(..., 2) angular frequencies [rad/s] of a stable theta0, the fast one (nutation) first; NaN where it is not stable."""
     mu = squared_exponents(body.kappa, theta_rad)
     stable = _growth(body.kappa, theta_rad) == 0.0
-    return np.where(stable, body.orbital_rate_rad_s * np.sqrt(np.abs(mu)), np.nan)
+    return np.where(stable[..., None], body.orbital_rate_rad_s * np.sqrt(np.abs(mu)), np.nan)
 
 
 def kind_of(kappa, theta_rad) -> np.ndarray:
@@ -96,8 +97,9 @@ def kind_of(kappa, theta_rad) -> np.ndarray:
 
 
 def critical_angle(kappa: float) -> float:
-    """theta0 [rad] in 180 to 270 deg from which on the upper branch is unstable; its mirror is 540 deg less it.
+    """The first theta0 [rad] above 180 deg at which the upper branch is unstable; its mirror is 540 deg less it.
 
+    From kappa about 0.6 on it stays unstable to 270 deg; below, stable stretches follow before the pull alone upsets it.
     For kappa from 1e-3 to 1e9. It nears the sleeping top's limit, C r0 = 2 sqrt(A F d), from below as kappa grows.
     """
     if not LEAST_KAPPA <= kappa <= MOST_KAPPA:
@@ -115,7 +117,7 @@ def critical_angle(kappa: float) -> float:
 
 
 def critical_spin(body: SpinningSubsatellite) -> float:
-    """The spin phi' [rad/s] below which the upper branch is unstable."""
+    """The spin phi' [rad/s] above which the upper branch is stable, that of `critical_angle`."""
     return float(spin_for_angle(body, critical_angle(body.kappa)))
 
 
@@ -130,7 +132,8 @@ def stability_map(body: SpinningSubsatellite, spin_rad_s, offset_m):
     Returns
     -------
     Dataset over spin, offset and solution (up to 4, NaN and "" where there are fewer): theta [rad], growth [1/s], kind,
-    hangs (theta below 180 deg); critical_spin (offset) [rad/s], NaN where kappa is beyond what `critical_angle` takes.
+    hangs (theta below 180 deg); margin (spin, offset) of `four_angle_margin`; critical_spin (offset) [rad/s], NaN where
+    kappa is beyond what `critical_angle` takes.
     """
     import xarray as xr
 
@@ -139,11 +142,12 @@ def stability_map(body: SpinningSubsatellite, spin_rad_s, offset_m):
         raise InputError(f"spin_rad_s and offset_m must be lists of at most {MOST_POINTS} pairs together.")
     theta = np.full((spins.size, offsets.size, 4), np.nan)
     growth, kinds = theta.copy(), np.full(theta.shape, "", dtype="U10")
-    limit = np.empty(offsets.size)
+    margin, limit = np.empty(theta.shape[:2]), np.empty(offsets.size)
     for j, offset in enumerate(offsets):
         here = replace(body, offset_m=float(offset))
         limit[j] = critical_spin(here) if LEAST_KAPPA <= here.kappa <= MOST_KAPPA else np.nan
         theta[:, j] = stationary_angles(here, spins)
+        margin[:, j] = four_angle_margin(here, spins)
         there = np.isfinite(theta[:, j])
         growth[:, j][there] = growth_rate(here, theta[:, j][there])
         kinds[:, j][there] = kind_of(here.kappa, theta[:, j][there])
@@ -154,7 +158,8 @@ def stability_map(body: SpinningSubsatellite, spin_rad_s, offset_m):
             "growth": (grid, growth, {"units": "s-1", "long_name": "rate at which a small motion grows"}),
             "kind": (grid, kinds),
             "hangs": (grid, theta < np.pi, {"long_name": "centre of mass beyond the attachment, seen along the tether"}),
-            "critical_spin": ("offset", limit, {"units": "rad s-1", "long_name": "spin below which the upper branch goes"}),
+            "margin": (("spin", "offset"), margin, {"units": "1", "long_name": "positive where four angles exist"}),
+            "critical_spin": ("offset", limit, {"units": "rad s-1", "long_name": "spin above which the upper branch is stable"}),
         },
         coords={"spin": ("spin", spins, {"units": "rad s-1"}), "offset": ("offset", offsets, {"units": "m"})},
     )

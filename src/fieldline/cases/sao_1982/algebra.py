@@ -19,7 +19,7 @@ from fieldline.analysis.spinning_subsatellite import (
     spin_for_angle,
     stability_map,
 )
-from fieldline.analysis.spinning_subsatellite.stability import LEAST_KAPPA, MOST_KAPPA, squared_exponents
+from fieldline.analysis.spinning_subsatellite.stability import LEAST_KAPPA, MOST_KAPPA, frequencies, squared_exponents
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.erbs_like import number
 from fieldline.cases.sao_1982.flight import SOURCE, pair_at
@@ -57,16 +57,31 @@ def report_body(
     )
 
 
-def stationary(spin_rad_s=None, **body):
+def stationary(
+    spin_rad_s=None,
+    *,
+    axial_inertia_kg_m2: float = AXIAL_KG_M2,
+    transverse_inertia_kg_m2: float = TRANSVERSE_KG_M2,
+    offset_m: float = OFFSET_M,
+    tension_n: float | None = None,
+    orbital_rate_rad_s: float | None = None,
+):
     """Angles at which the axis stands still, (16) to (26), over the spin, as an xarray Dataset.
 
-    spin_rad_s : phi' [rad/s], a list or one number; by default 1e-4 to 1 in equal ratios. body : what differs from the
-    report's subsatellite: axial_inertia_kg_m2, transverse_inertia_kg_m2, offset_m, tension_n, orbital_rate_rad_s.
+    spin_rad_s : phi' [rad/s], a list or one number; by default 1e-4 to 1 in equal ratios. The rest: the body,
+    its tether's pull and its orbit, by default the report's.
 
     Returns theta (spin, solution) [rad], two or four in rising order and NaN for the rest; kind and growth [1/s] with it;
     first_order (spin, branch) [rad] of (26); number (spin). Attributes kappa, critical_angle_deg, critical_spin_rad_s.
     """
-    subsatellite = _body(body)
+    settings = dict(locals())
+    subsatellite = report_body(
+        axial_inertia_kg_m2=axial_inertia_kg_m2,
+        transverse_inertia_kg_m2=transverse_inertia_kg_m2,
+        offset_m=offset_m,
+        tension_n=tension_n,
+        orbital_rate_rad_s=orbital_rate_rad_s,
+    )
     spins = np.geomspace(1e-4, 1.0, 200) if spin_rad_s is None else np.atleast_1d(np.asarray(spin_rad_s, dtype=float))
     _few(spins)
     data = stability_map(subsatellite, spins, [subsatellite.offset_m]).isel(offset=0).drop_vars("critical_spin")
@@ -75,51 +90,85 @@ def stationary(spin_rad_s=None, **body):
     data["first_order"] = (("spin", "branch"), first, words)
     data["number"] = ("spin", np.isfinite(data["theta"].values).sum(axis=1), {"long_name": "stationary angles that exist"})
     data.coords["branch"] = ["hanging", "inverted"]
-    data.attrs = _attributes(subsatellite, "sao_1982_stationary", "Stationary angles over the spin", body)
+    data.attrs = _attributes(subsatellite, "sao_1982_stationary", "Stationary angles over the spin", settings)
     return data
 
 
-def stability(theta_deg=None, *, orbits: float = 0.0, **body):
+def stability(
+    theta_deg=None,
+    *,
+    orbits: float = 0.0,
+    axial_inertia_kg_m2: float = AXIAL_KG_M2,
+    transverse_inertia_kg_m2: float = TRANSVERSE_KG_M2,
+    offset_m: float = OFFSET_M,
+    tension_n: float | None = None,
+    orbital_rate_rad_s: float | None = None,
+):
     """The small motion about each angle, by the right (39), and the whole motion beside it, as an xarray Dataset.
 
     theta_deg : angles [deg], a list or one number, no multiples of 180; by default 1 to 359 in odd degrees. orbits : how long
-    the whole motion is followed from a push of 1e-4 rad in theta; 0: not at all. body : as in `stationary`.
+    the whole motion is followed from a push of 1e-4 rad in theta; 0: not at all. The rest: as in `stationary`.
 
-    Returns, over theta: spin [rad/s] that stands there, p2, p1, p0 of (39) over A^2 n^4, mu (theta, root) [n^2], growth
-    [1/s], kind; with orbits also away [rad], the farthest from the start, and the drifts of (29) and the Jacobi integral.
+    Returns, over theta: spin [rad/s] that stands there, p2, p1, p0 of (39) over A^2 n^4, mu_real and mu_imaginary (theta,
+    root) [n^2], frequency (theta, root) [rad/s] or NaN, growth [1/s], kind; with orbits also away [rad], the farthest from
+    the stationary place, and the drifts of (29) and of the Jacobi integral over their sizes.
     """
+    settings = dict(locals())
     import xarray as xr
 
-    subsatellite = _body(body)
+    subsatellite = report_body(
+        axial_inertia_kg_m2=axial_inertia_kg_m2,
+        transverse_inertia_kg_m2=transverse_inertia_kg_m2,
+        offset_m=offset_m,
+        tension_n=tension_n,
+        orbital_rate_rad_s=orbital_rate_rad_s,
+    )
     degrees = np.arange(1.0, 360.0, 2.0) if theta_deg is None else np.atleast_1d(np.asarray(theta_deg, dtype=float))
     _few(degrees)
     theta, n = np.radians(degrees), subsatellite.orbital_rate_rad_s
     p2, p1, p0 = characteristic_coefficients(subsatellite.kappa, theta)
+    mu, frequency = squared_exponents(subsatellite.kappa, theta), frequencies(subsatellite, theta)
     data = xr.Dataset(
         {
             "spin": ("theta", spin_for_angle(subsatellite, theta), {"units": "rad s-1", "long_name": "stationary spin"}),
             "p2": ("theta", p2),
             "p1": ("theta", p1),
             "p0": ("theta", p0),
-            "mu": (("theta", "root"), squared_exponents(subsatellite.kappa, theta), {"long_name": "squared exponent over n^2"}),
+            "mu_real": (("theta", "root"), mu.real, {"long_name": "real part of the squared exponent over n^2"}),
+            "mu_imaginary": (("theta", "root"), mu.imag, {"long_name": "imaginary part of the squared exponent over n^2"}),
+            "frequency": (("theta", "root"), frequency, {"units": "rad s-1", "long_name": "angular frequency, if stable"}),
             "growth": ("theta", growth_rate(subsatellite, theta), {"units": "s-1", "long_name": "rate of growth"}),
             "kind": ("theta", kind_of(subsatellite.kappa, theta)),
         },
         coords={"theta": ("theta", theta, {"units": "rad", "long_name": "stationary angle"})},
-        attrs=_attributes(subsatellite, "sao_1982_stability", "Stability of the stationary angles", body),
+        attrs=_attributes(subsatellite, "sao_1982_stability", "Stability of the stationary angles", settings),
     )
     if number("orbits", orbits, 0.0, 200.0) > 0.0:
         _add_whole_motion(data, subsatellite, orbits * 2.0 * np.pi / n)
     return data
 
 
-def stability_chart(spin_rad_s=None, offset_m=None, **body):
+def stability_chart(
+    spin_rad_s=None,
+    offset_m=None,
+    *,
+    axial_inertia_kg_m2: float = AXIAL_KG_M2,
+    transverse_inertia_kg_m2: float = TRANSVERSE_KG_M2,
+    tension_n: float | None = None,
+    orbital_rate_rad_s: float | None = None,
+):
     """`analysis.spinning_subsatellite.stability_map` of the report's subsatellite, over spin [rad/s] and offset [m]."""
-    subsatellite = _body(body)
-    spins = np.geomspace(5e-4, 0.2, 120) if spin_rad_s is None else spin_rad_s
-    offsets = np.geomspace(1e-3, 2.0, 120) if offset_m is None else offset_m
+    settings = dict(locals())
+    subsatellite = report_body(
+        axial_inertia_kg_m2=axial_inertia_kg_m2,
+        transverse_inertia_kg_m2=transverse_inertia_kg_m2,
+        tension_n=tension_n,
+        orbital_rate_rad_s=orbital_rate_rad_s,
+    )
+    spins = np.geomspace(2e-4, 0.05, 120) if spin_rad_s is None else spin_rad_s
+    offsets = np.geomspace(1e-3, 2.0, 100) if offset_m is None else offset_m
     data = stability_map(subsatellite, spins, offsets)
-    data.attrs = _attributes(subsatellite, "sao_1982_stability_chart", "Stability over spin and offset", body)
+    data.attrs = _attributes(subsatellite, "sao_1982_stability_chart", "Stability over spin and offset", settings)
     return data
 
 
@@ -144,31 +193,20 @@ def _drift(values: np.ndarray) -> float:
     return float(np.ptp(values) / np.abs(values).max())
 
 
-def _body(changes: dict) -> SpinningSubsatellite:
-    """The test case's body with changes; a misspelt name is refused."""
-    from fieldline.errors import nearest
-
-    known = ("axial_inertia_kg_m2", "transverse_inertia_kg_m2", "offset_m", "tension_n", "orbital_rate_rad_s")
-    for name in changes:
-        if name not in known:
-            raise InputError(f'unknown argument "{name}"; {nearest(name, known)}')
-    return report_body(**changes)
-
-
 def _few(values: np.ndarray) -> None:
     """InputError for a list that is none, or too long."""
     if values.ndim != 1 or not 0 < values.size <= MOST_ROWS or not np.isfinite(values).all():
         raise InputError(f"give a list of 1 to {MOST_ROWS} finite numbers; got shape {values.shape}.")
 
 
-def _attributes(body: SpinningSubsatellite, case: str, title: str, changes: dict) -> dict:
+def _attributes(body: SpinningSubsatellite, case: str, title: str, settings: dict) -> dict:
     """What a Dataset says of itself."""
     inside = LEAST_KAPPA <= body.kappa <= MOST_KAPPA
     return {
         "title": title,
         "case": case,
         "source": f"{SOURCE}, section 2",
-        "settings_json": settings_text(changes),
+        "settings_json": settings_text(settings),
         "kappa": body.kappa,
         "tension_n": body.tension_n,
         "orbital_rate_rad_s": body.orbital_rate_rad_s,
