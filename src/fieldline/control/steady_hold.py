@@ -62,7 +62,7 @@ def most_held_share(F, G, H, reference, limits) -> tuple[float, np.ndarray]:
     found = linprog(cost, A_eq=balance * column, b_eq=np.zeros(kept.sum()), bounds=bounds, method="highs")
     if not found.success:
         raise NoEstimateError(f"the largest hold was not found: {found.message}")
-    return float(found.x[-1] / size), found.x[:-1]
+    return max(0.0, float(found.x[-1] / size)), found.x[:-1]
 
 
 def refuse_unreachable(share: float, reference, limits_words: str) -> None:

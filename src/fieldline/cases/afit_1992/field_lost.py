@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.cases.afit_1992.earth import ALTITUDE_M, SOURCE, circle
+from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LATITUDE_DEG, SOURCE, circle
 from fieldline.cases.afit_1992.field_in_orbit import DATE, INCLINATIONS_DEG, model_field_h
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.erbs_like import number
@@ -33,7 +33,8 @@ def lost_field(
     """The least field in the orbit's plane and across it, over all arguments and nodes, as a Dataset over inclination_deg.
 
     in_plane_least, across_least [T] (zero where it changes sign); in_plane_share, the time with less than a twentieth of
-    the RMS in the plane, across_share the same across; and where: argument_deg, node_longitude_deg of the first.
+    the RMS in the plane, across_share the same across; and where: argument_deg, node_longitude_deg of the first;
+    in_plane_least_dipole, across_least_dipole of the thesis's dipole, in closed form.
     """
     inclinations = np.atleast_1d(np.asarray(inclinations_deg, dtype=float))
     if inclinations.ndim != 1 or not ((inclinations >= 0.0) & (inclinations <= 180.0)).all():
@@ -43,7 +44,17 @@ def lost_field(
     argument, node = (one.ravel() for one in np.meshgrid(ring, ring, indexing="ij"))
     rows = [_at(i, argument, node, radius, step_deg, model, date) for i in inclinations]
     settings = {"altitude_m": altitude_m, "step_deg": step_deg, "model": model, "date": date}
-    return _dataset(inclinations, np.array(rows), settings)
+    dataset = _dataset(inclinations, np.array(rows), settings)
+    for name, values in zip(("in_plane", "across"), _dipole_least(inclinations, circle(altitude_m).strength_tesla), strict=True):
+        words = f"the same of the thesis's dipole, {name.replace('_', ' ')}"
+        dataset[f"{name}_least_dipole"] = ("inclination_deg", values, {"units": "T", "long_name": words})
+    return dataset
+
+
+def _dipole_least(inclinations: np.ndarray, strength: float) -> tuple[np.ndarray, np.ndarray]:
+    """[T] of a tilted dipole: its least angle from the normal is |i - tilt|, its greatest i + tilt (mirrored beyond 90)."""
+    tilt, i = 90.0 + POLE_LATITUDE_DEG, np.minimum(inclinations, 180.0 - inclinations)
+    return strength * np.abs(np.sin(np.radians(i - tilt))), strength * np.cos(np.radians(np.minimum(i + tilt, 90.0)))
 
 
 def _at(inclination: float, argument, node, radius: float, step: float, model: str, date: str) -> list[float]:

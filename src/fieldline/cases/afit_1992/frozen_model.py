@@ -58,9 +58,9 @@ def built(settings: dict) -> TrackingVehicle:
 
 
 def frozen_plant(
-    made: TrackingVehicle, orbit: Circle, field_angle_deg=FIELD_ANGLE_DEG, inclination_deg: float = 0.0, node_deg: float = 0.0
+    made: TrackingVehicle, orbit: Circle, field_angle_deg=FIELD_ANGLE_DEG, inclination_deg: float = 0.0, node_deg=0.0
 ) -> tuple[Plant, np.ndarray]:
-    """The plant at an angle of the field, or at several, and that field (..., 3) [T]."""
+    """The plant at an angle of the field, or at several, and that field (..., 3) [T]; angle and node broadcast."""
     number("inclination_deg", inclination_deg, 0.0, 180.0)
     field_h = frozen_field_h(orbit, field_angle_deg, inclination_deg, node_deg)
     plant = electrodynamic_plant(

@@ -20,6 +20,8 @@ from fieldline.errors import InputError
 from fieldline.mechanics.relative_motion import STATES
 
 MOST_LOST = 7
+RETURNED = 1e-3  # margin from which a motion counts as within reach again
+STEP_S = 60.0
 
 
 def controllability(
@@ -69,13 +71,14 @@ def refuse_uncontrollable(
     part, whole = np.abs(field_h), float(np.linalg.norm(field_h))
     weak = [name for name, size in zip(("up", "along the track", "across the orbit"), part, strict=True) if size < 1e-6 * whole]
     why = f"the field has no part {' or '.join(weak)} here" if weak else "the conductors' arms and the field leave it out"
-    ahead = np.arange(1.0, 360.0)
-    later = frozen_plant(made, orbit, field_angle_deg + ahead, inclination_deg, node_deg)[0]
-    back = np.flatnonzero(controllability_now(later.F, later.G, **scales).controllable)
-    when = "it does not return in this orbit"
+    seconds = np.arange(STEP_S, 2.0 * np.pi / SPIN_RAD_S, STEP_S)
+    node = node_deg - np.degrees(SPIN_RAD_S * seconds)
+    angle = field_angle_deg + np.degrees((orbit.mean_motion_rad_s - SPIN_RAD_S) * seconds)
+    later = frozen_plant(made, orbit, angle, inclination_deg, node)[0]
+    back = np.flatnonzero(controllability_now(later.F, later.G, **scales).margin > RETURNED)
+    when = "it does not return within a day"
     if len(back):
-        seconds = ahead[back[0]] / np.degrees(orbit.mean_motion_rad_s - SPIN_RAD_S)
-        when = f"it returns within {seconds:.0f} s, {ahead[back[0]]:g} deg further"
+        when = f"its margin is back to {RETURNED:g} after {seconds[back[0]]:.0f} s, as orbit and Earth turn on"
     raise InputError(
         f"not controllable at a field's angle of {field_angle_deg:g} deg: the motion in {words_of(now.motion, STATES)} cannot be "
         f"reached (margin {float(now.margin):.1e}), because {why}; {when}."
