@@ -13,13 +13,11 @@ from PIL import Image
 
 from fieldline.cases.tp3123 import run
 from fieldline.estimation.skiprope import (
-    FieldGeometry,
     group_delay_s,
     midpoint_position,
     tether_azimuth,
     tilt_azimuth,
     tune,
-    with_delayed_azimuth,
 )
 from fieldline.report.series import legend, line
 from fieldline.report.theme import AXIS_COLOURS, FAINT, GREY, INK, WARM, label_outer, panels, themed, write_png
@@ -37,17 +35,11 @@ def save(figure, name):
     Image.open(drawn).convert("RGB").quantize(128).save(HERE / f"tp3123_{name}.png", optimize=True)
 
 
-def known(case):
-    """The field as the ground takes it."""
-    names = ("field_assumed_tesla", "elevation_assumed_rad", "azimuth_assumed_rad")
-    return FieldGeometry(*(case[name].values for name in names))
-
-
 def plane_figure(case):
     """Where the tether's middle is, and the error of its plane by the paper's rule and with the filter's delay in it."""
     figure, axes = panels(1, 2, height_in=3.9, widths=(1.0, 1.9), column_gap=0.2)
     seconds, reading = case.seconds.values, read_case(case)
-    late = with_delayed_azimuth(reading, seconds, known(case), group_delay_s(0.005, 0.005))
+    late = read_case(case, azimuth_delay_s=float(group_delay_s(0.005, 0.005)))
     one_turn = (seconds >= 3000.0) & (seconds <= 3200.0)
     tilt, azimuth = case.cone_rad.values[one_turn], case.cone_azimuth_rad.values[one_turn]
     out = tilt * LENGTH_M / np.pi

@@ -161,6 +161,8 @@ def test_records_too_short_are_refused():
         read_cone(SECONDS[short], harmonics()[short], part, HZ / 5.0, settle_s=0.0)
     with pytest.raises(InputError, match="three signals"):
         read_cone(SECONDS, harmonics()[:, :2], STILL, HZ)
+    with pytest.raises(InputError, match="one value for each"):
+        read_cone(SECONDS, harmonics(), part, HZ)
     with pytest.raises(InputError, match="by must be"):
         read_cone(SECONDS, harmonics(), STILL, HZ, by="eye")
 

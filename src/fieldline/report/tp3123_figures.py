@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldline.errors import NoEstimateError
-from fieldline.estimation.skiprope import ConeReading, FieldGeometry, read_cone
+from fieldline.estimation.skiprope import ConeReading, FieldGeometry, FieldKnowledge, read_cone
 from fieldline.report.series import legend, line
 from fieldline.report.theme import AXIS_COLOURS, FAINT, INK, WARM, label_outer, panels
 
@@ -70,15 +70,23 @@ def filters_figure(dataset: Any) -> Figure:
     return _finished(figure, axes, time)
 
 
-def read_case(dataset: Any) -> ConeReading | None:
-    """The rules' reading of the case; None where it is too short for them."""
+def read_case(dataset: Any, azimuth_delay_s: float = 0.0) -> ConeReading | None:
+    """The rules' reading of the case, its field errors taken for one sigma; None where it is too short for them."""
     import json
 
     names = ("field_assumed_tesla", "elevation_assumed_rad", "azimuth_assumed_rad")
     known = FieldGeometry(*(dataset[name].values for name in names))
-    frequency = json.loads(dataset.attrs["settings_json"])["filter_frequency_hz"]
+    told = json.loads(dataset.attrs["settings_json"])
+    errors = told["field_scale_error"], *np.radians([told["elevation_error_deg"], told["azimuth_error_deg"]])
+    signals = dataset["seconds"].values, dataset["filtered"].values, known, told["filter_frequency_hz"]
+    more = {
+        "damping": told["damping"],
+        "settle_s": SETTLE_S,
+        "azimuth_delay_s": azimuth_delay_s,
+        "knowledge": FieldKnowledge(*np.abs(errors)),
+    }
     try:
-        return read_cone(dataset["seconds"].values, dataset["filtered"].values, known, frequency, settle_s=SETTLE_S)
+        return read_cone(*signals, **more)
     except NoEstimateError:
         return None
 

@@ -71,7 +71,7 @@ def run(
 
     Errors: InputError for arguments out of range.
     """
-    settings = {k: str(v) if isinstance(v, FieldModel) else v for k, v in locals().items()}
+    settings = {k: v.name if isinstance(v, FieldModel) else v for k, v in locals().items()}
     _check(settings)
     flight = fly(
         duration_s=number("duration_s", duration_s, 1.0, LONGEST_S),
@@ -171,11 +171,25 @@ def _check(settings: dict) -> None:
     number("skiprope_frequency_hz", frequency, -RATE_HZ / 2.0, RATE_HZ / 2.0)
     if frequency == 0.0:
         raise InputError("skiprope_frequency_hz must not be zero; its sign is the sense of the cone.")
-    for name in ("field_scale_error", "elevation_error_deg", "azimuth_error_deg"):
-        number(name, settings[name], -0.9 if name == "field_scale_error" else -90.0, 90.0)
+    for name in ("filter_frequency_hz", "pendulous_frequency_hz"):
+        number(name, settings[name], 1e-6, RATE_HZ / 2.0)
+    number("damping", settings["damping"], 1e-3, 0.999)
+    number("field_scale_error", settings["field_scale_error"], -0.9, 10.0)
+    for name in ("elevation_error_deg", "azimuth_error_deg"):
+        number(name, settings[name], -90.0, 90.0)
     for name, count in (("skiprope_deg", 2), ("pendulous_deg", 2), ("bias_deg", 3)):
-        values = np.asarray(settings[name], dtype=float)
-        if values.shape != (count,) or not np.isfinite(values).all():
-            raise InputError(f"{name} must be {count} angles [deg]; got {settings[name]!r}.")
+        _angles(name, settings[name], count)
+    if isinstance(settings["seed"], bool) or not isinstance(settings["seed"], int) or settings["seed"] < 0:
+        raise InputError(f"seed must be a whole number, 0 or more; got {settings['seed']!r}.")
     if settings["method"] not in METHODS:
         raise InputError(f"method must be one of {', '.join(METHODS)}; got {settings['method']!r}.")
+
+
+def _angles(name: str, given, count: int) -> None:
+    """Refuse what is not `count` finite numbers."""
+    try:
+        values = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        values = np.empty(0)
+    if values.shape != (count,) or not np.isfinite(values).all():
+        raise InputError(f"{name} must be {count} angles [deg]; got {given!r}.")

@@ -28,7 +28,7 @@ from fieldline.estimation.skiprope.position import (
     tether_azimuth,
     tilt_azimuth,
 )
-from fieldline.estimation.skiprope.reading import ConeReading, FieldKnowledge, read_cone, with_delayed_azimuth
+from fieldline.estimation.skiprope.reading import ConeReading, FieldKnowledge, read_cone
 from fieldline.estimation.skiprope.signals import (
     ORBITAL_FROM_CONE,
     FieldGeometry,
@@ -59,7 +59,6 @@ __all__ = [
     "extremes",
     "fit_cycles",
     "read_cone",
-    "with_delayed_azimuth",
     "ConeReading",
     "FieldKnowledge",
     "tilt_azimuth",

@@ -35,7 +35,7 @@ Source: Polites (1991), NASA TP-3123, section II, rules (1) to (3); the uncertai
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -116,6 +116,8 @@ def read_cone(
     times, rows = as_series(seconds, filtered)
     if rows.shape[1] != 3:
         raise InputError(f"filtered must hold three signals (n, 3); got {rows.shape}.")
+    if any(np.shape(column) != times.shape for column in geometry):
+        raise InputError(f"geometry must have one value for each of the {len(times)} samples; got {np.shape(geometry[0])}.")
     if by not in READ_BY:
         raise InputError(f"by must be one of {', '.join(READ_BY)}; got {by!r}.")
     delay = float(group_delay_s(filter_frequency_hz, filter_frequency_hz, damping))
@@ -255,12 +257,6 @@ def ellipse_of(phasor) -> float:
     if not whole > 0.0:
         return 1.0
     return float(np.sqrt(max(whole - turning, 0.0) / (whole + turning)))  # (9)
-
-
-def with_delayed_azimuth(reading: ConeReading, seconds, geometry: FieldGeometry, delay_s: float) -> ConeReading:
-    """The same reading with the azimuth taken `delay_s` before each maximum, and its scatter as it was."""
-    azimuth = np.interp(reading.maximum_s - delay_s, seconds, np.unwrap(geometry.azimuth_rad))
-    return replace(reading, azimuth_rad=azimuth)
 
 
 def _plane_scatter(maximum, azimuth, signed_hz: float, misfit_share) -> tuple[float, float]:
