@@ -2,7 +2,7 @@
 
 A variable `name` with a partner `name_true` makes a panel, a line for the truth and dots for the estimate; the floats over
 time alone (losses, errors, a discriminant) make a panel for each first word of their names. A case whose attribute "case"
-is known to `ames_1961_figures` is drawn there.
+is known to `ames_1961_figures`, `sao_1982_figures`, `tp3123_figures` or `afit_1992_figures` is drawn there.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldline.errors import InputError
-from fieldline.report.ames_1961_figures import OWN_FIGURES, own_figure
+from fieldline.report import afit_1992_figures, ames_1961_figures, sao_1982_figures, tp3123_figures
 from fieldline.report.record import Clock
 from fieldline.report.series import legend, line, points
 from fieldline.report.theme import AXIS_COLOURS, FOURTH, INK, WARM, label_outer, panels, themed
@@ -27,8 +27,13 @@ PANEL_HEIGHT_IN = 1.55
 
 def case_figure(dataset: Any) -> Figure:
     """The figure of a case's Dataset, its own where it has one; InputError where it has nothing over time."""
-    if str(dataset.attrs.get("case", "")) in OWN_FIGURES:
-        return own_figure(dataset)
+    known: dict[str, Any] = {}
+    for room in (ames_1961_figures, sao_1982_figures, tp3123_figures, afit_1992_figures):
+        known |= room.OWN_FIGURES
+    own = known.get(str(dataset.attrs.get("case", "")))
+    if own is not None:
+        with themed():
+            return own(dataset)
     pairs, singles = pairs_of(dataset), singles_of(dataset)
     count = len(pairs) + len(singles)
     if "time" not in dataset.coords or not count:
