@@ -30,6 +30,15 @@ def shown(text: str, length: int = 40) -> str:
     return "".join(c if c.isprintable() else "?" for c in " ".join(text[: 4 * length].split()))[:length]
 
 
+def raised(error: BaseException, length: int = 300) -> str:
+    """What a function of the user's own raised: kind and text, on one line, whatever its text does."""
+    try:
+        text = shown(str(error), length)
+    except Exception:  # an exception's own __str__ may fail
+        text = ""
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """A clause that names the nearest known word, or lists all of them when none is near."""
     known = sorted(known)

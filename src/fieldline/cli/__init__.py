@@ -1,7 +1,7 @@
 """The command line: `main` runs it and turns every end into an exit code and, at most, one paragraph.
 
 0 a usable result        1 ran, but the data do not support an estimate        2 bad input
-70 a fault in Fieldline  130 interrupted; nothing partial is left behind
+70 a fault in Fieldline  130 interrupted; nothing partial is left behind but a flight's files, marked partial
 """
 
 from __future__ import annotations
@@ -47,6 +47,7 @@ def _run(arguments: list[str]) -> int:
     import typer
 
     from fieldline.cli.app import app
+    from fieldline.cli.outputs import Told
 
     try:
         code = typer.main.get_command(app).main(args=arguments, prog_name="fieldline", standalone_mode=False)
@@ -56,7 +57,7 @@ def _run(arguments: list[str]) -> int:
         if not hasattr(error, "format_message"):
             raise
         return _refuse_usage(error)
-    if code == INTERRUPTED:  # newer Typer ends so by itself, older ones by Abort
+    if code == INTERRUPTED and not isinstance(code, Told):  # newer Typer ends so by itself, older ones by Abort
         raise KeyboardInterrupt
     return code if isinstance(code, int) else 0
 

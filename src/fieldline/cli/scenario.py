@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 
 scenario = typer.Typer(
     help="Begin, check and look up scenario files (TOML).",
@@ -26,6 +26,7 @@ def new(
     list_: Annotated[bool, typer.Option("--list", help="List the templates and stop.")] = False,
 ) -> int:
     """Write a complete, commented scenario to change and fly."""
+    from fieldline.cli.outputs import exists
     from fieldline.files import write_text_whole
     from fieldline.simulate.scenario.templates import TEMPLATES
     from fieldline.simulate.scenario.templates import template as template_text
@@ -35,10 +36,13 @@ def new(
         return 0
     if name is None:
         raise InputError("fieldline scenario new needs a NAME, for example: fieldline scenario new cubesat --template detumble")
+    last = Path(name).name
+    if last in ("", "..") or not name.isprintable():
+        raise InputError(f'a scenario cannot be named "{shown(name)}"; give it a name such as cubesat.')
     path = Path(f"{name}.toml") if out is None else out
-    if path.exists():
+    if exists(path, "the file"):
         raise InputError(f'"{path}" exists already, and is left as it is. Choose another name, or --out.')
-    write_text_whole(path, template_text(template, Path(name).name))
+    write_text_whole(path, template_text(template, last))
     print(f"wrote {path}")
     return 0
 

@@ -6,7 +6,7 @@ import json
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import typer
 
 from fieldline.cli import options
-from fieldline.cli.outputs import refuse_inputs, stem_of, targets, wrote
+from fieldline.cli.outputs import Told, exists, refuse_inputs, refuse_twins, stem_of, targets, wrote
 from fieldline.cli.progress import Progress, progress_on_stderr
 from fieldline.errors import InputError
 
@@ -66,22 +66,24 @@ def simulate(
     job = _job(scenario, out, as_telemetry, body, report, figures)
     flown = Scenario.read(scenario)
     _check_telemetry(flown, job)
+    outputs = [*job.paths.values(), *([job.telemetry] if job.telemetry else [])]
+    refuse_inputs(outputs, [flown.folder / name for name in flown.files()])
     code, message = 0, ""
     with progress_on_stderr(quiet) as progress:
         try:
-            with _told_of_compiling(progress):
+            with _told_of_compiling(progress), redirect_stdout(sys.stderr):  # what a law prints is no result
                 dataset = fly(flown, seed=seed, progress=_flying(flown, progress))
             progress("flying", 1, 1, str(dataset.attrs["outcome"]))
         except RunInterrupted as stop:
-            dataset, code, message = stop.dataset, INTERRUPTED, f"interrupted: {stop}"
+            dataset, code, message = stop.dataset, INTERRUPTED, f"fieldline: {stop}"
         except RunError as error:
-            dataset, code, message = error.dataset, PARTIAL, f"error: {error}"
+            dataset, code, message = error.dataset, PARTIAL, f"fieldline: {error}"
         written = write_run(dataset, job, progress)
     _tell(dataset, written, quiet, as_json)
     if message:
         kept = f" What was simulated until then is kept, marked partial: {', '.join(map(str, written))}." if written else ""
-        print(f"{message}{kept}", file=sys.stderr)
-    return code
+        print(f"{message}{kept or ' Nothing was written.'}", file=sys.stderr)
+    return Told(code)
 
 
 def _job(scenario: Path, out: Path | None, telemetry: Path | None, body: str | None, report: Path | None, figures: bool) -> Job:
@@ -94,11 +96,20 @@ def _job(scenario: Path, out: Path | None, telemetry: Path | None, body: str | N
         refuse_inputs([path] if path is not None else [], [scenario])
     if report is not None:
         paths[".html"] = report
+    refuse_twins([*paths.values(), telemetry])
+    folder = _figures_of(stem)
+    if figures and exists(folder, "--figures") and not folder.is_dir():
+        raise InputError(f'--figures: the figures go into the folder "{folder}", but a file of that name is there. Move it away.')
     if telemetry is not None and telemetry.suffix.lower() != ".csv":
         raise InputError(f'--as-telemetry "{telemetry}": telemetry is written as CSV; give a name that ends in .csv.')
     if body is not None and telemetry is None:
         raise InputError("--body says whose telemetry is written; give --as-telemetry FILE.csv with it.")
     return Job(paths=paths, stem=stem, telemetry=telemetry, body=body, figures=figures)
+
+
+def _figures_of(stem: Path) -> Path:
+    """The folder of the figures."""
+    return stem.with_name(stem.name + "_figures")
 
 
 def _check_telemetry(scenario: Any, job: Job) -> None:
@@ -166,7 +177,7 @@ def write_run(dataset: Any, job: Job, progress: Progress) -> list[Path]:
             progress("telemetry", 1, 1, line)
     written = write_together(files)
     if job.figures:
-        written += [write_simulation_figures(dataset, job.stem.with_name(job.stem.name + "_figures"))[0].parent]
+        written += [write_simulation_figures(dataset, _figures_of(job.stem))[0].parent]
     progress("writing", 1, 1, f"{len(written)} files")
     return written
 

@@ -17,6 +17,7 @@ import numpy as np
 from fieldline.dynamics.parameters import TANGENT, tangent_size
 from fieldline.dynamics.rates import EVENT_AT_WORK, LAW_AT_WORK, LOAD_AT_WORK
 from fieldline.dynamics.step import new_shared, new_work
+from fieldline.errors import InputError, shown
 from fieldline.integrate.tableau import DOP853, RK4
 from fieldline.simulate.assembly import boards as made
 from fieldline.simulate.assembly.design import Design
@@ -43,7 +44,7 @@ class Flight:
     def __init__(self, scenario, seed: int | None = None):
         """Everything is checked and made here; `seed` replaces the scenario's."""
         self.scenario = scenario
-        self.seed = scenario.seed if seed is None else seed
+        self.seed = scenario.seed if seed is None else as_seed(seed)
         self.rng = np.random.default_rng([self.seed, NOISE_STREAM])
         self.duration_s = scenario.time.length_s(period_s(*start_states(scenario)[0]))
         self.host = Host()
@@ -113,6 +114,13 @@ class Flight:
     def complete(self) -> bool:
         """Whether the run went to its end, or to an event that was to stop it."""
         return self.outcome in (Outcome.DONE, Outcome.STOPPED) and not self.interrupted
+
+
+def as_seed(seed: int) -> int:
+    """A seed that the generator takes; InputError for any other."""
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
+        raise InputError(f"seed must be a whole number from 0 to 2^63 - 1; got {shown(repr(seed))}.")
+    return int(seed)
 
 
 def stepping_of(scenario, plant, duration_s: float) -> Stepping:

@@ -8,9 +8,16 @@ the loop looks, and a second one, for a law that does not end, is raised as usua
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+
+def is_compiling() -> bool:
+    """Whether Numba is at work on the loop."""
+    module = sys.modules.get("fieldline.simulate.loop.fly")
+    return bool(getattr(getattr(module, "fly", None), "is_compiling", False))
 
 
 @contextmanager
@@ -23,6 +30,8 @@ def noted(host) -> Iterator[None]:
 
     def note(number, frame):
         signal.signal(signal.SIGINT, usual)
+        if is_compiling():
+            raise KeyboardInterrupt  # nothing flies yet, and compiling takes long
         host.error = KeyboardInterrupt()
 
     signal.signal(signal.SIGINT, note)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, raised
 from fieldline.simulate.loop.records import Outcome
 
 FINER_TURN_RAD = 0.2  # of a step, proposed where a step was too coarse
@@ -55,15 +55,15 @@ def _who(flight, t: float) -> str:
 
 
 def _raised(flight, t: float) -> str:
-    error = flight.host.error
-    return f"{_who(flight, t)} raised {type(error).__name__}: {error}. Mend the law and run again."
+    return f"{_who(flight, t)} raised {raised(flight.host.error).rstrip('.')}. Mend the law and run again."
 
 
 def _shape(flight, t: float) -> str:
     task, got = _task(flight), int(flight.shared.culprit[1])
     expected = int(flight.tasks.replies[int(flight.shared.culprit[0])])
     groups = "q_bi and omega_bi_b" if task.record.role == "estimator" else ", ".join(task.commands)
-    return f"{_who(flight, t)} returned {got} numbers where {expected} are expected ({groups}). Check its return value."
+    numbers = "1 number" if got == 1 else f"{got} numbers"
+    return f"{_who(flight, t)} returned {numbers} where {expected} are expected ({groups}). Check its return value."
 
 
 def _not_finite(flight, t: float) -> str:
@@ -79,8 +79,7 @@ def _load(what: str):
 
     def words(flight, t: float) -> str:
         name = flight.load_names[int(flight.shared.culprit[0])]
-        error = flight.host.error
-        told = f"raised {type(error).__name__}: {error}" if what == "raised" else what
+        told = f"raised {raised(flight.host.error)}" if what == "raised" else what
         return f"{name} {told} at t = {t:.6g} s; it must return six finite numbers: force_i [N] and torque_b [N m]."
 
     return words
@@ -89,7 +88,7 @@ def _load(what: str):
 def _event(flight, t: float) -> str:
     event = flight.scenario.event[int(flight.shared.culprit[0])]
     error = flight.host.error
-    told = "gave no finite number" if error is None else f"raised {type(error).__name__}: {error}"
+    told = "gave no finite number" if error is None else f"raised {raised(error)}"
     return f'event "{event.name or event.kind}" ({event.function}) {told} at t = {t:.6g} s; it must return at least one number.'
 
 

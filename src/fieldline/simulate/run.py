@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldline.errors import InputError, shown
 from fieldline.simulate.outcome import RunError, RunInterrupted, sentence
 
 if TYPE_CHECKING:
@@ -44,6 +46,8 @@ def simulate(
     from fieldline.simulate.run_dataset import dataset_of
     from fieldline.simulate.scenario.scenario import Scenario
 
+    if not isinstance(scenario, Scenario | str | PathLike):
+        raise InputError(f"scenario must be a Scenario or the path of its TOML file; got {shown(repr(scenario))}.")
     if not isinstance(scenario, Scenario):
         scenario = Scenario.read(scenario)
     scenario.check()

@@ -188,14 +188,7 @@ def inputs_of(scenario) -> dict[str, str]:
     """SHA-256 of every file that a scenario names: orbits, Earth orientation, the user's functions."""
     from fieldline.files import sha256_of
 
-    orbits = [scenario.orbit, *(body.orbit for body in scenario.body)]
-    named = [one.tle for one in orbits if one is not None and one.tle is not None]
-    named += [scenario.environment.earth_orientation or ""]
-    functions = [one.law for one in scenario.software] + [one.function or "" for one in scenario.event]
-    functions += [one.function for body in scenario.body for one in body.load]
-    named += [name.rpartition(":")[0] for name in functions if ".py:" in name]
-    files = {name.strip() for name in named if name.strip() and "\n" not in name.strip()}
-    return {name: sha256_of(scenario.folder / name) for name in sorted(files)}
+    return {name: sha256_of(scenario.folder / name) for name in scenario.files()}
 
 
 def attributes(flight) -> dict:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from fieldline.records import Record
+from fieldline.records.names import Name
 from fieldline.records.values import Vector
 
 ORIGIN = (0.0, 0.0, 0.0)
@@ -13,7 +14,7 @@ ORIGIN = (0.0, 0.0, 0.0)
 class Line(Record):
     """A visco-elastic line: tension = stiffness strain + damping strain_rate where both stretch and tension are positive."""
 
-    name: str = Field(default="", description="name in results; by default line_1, line_2, ...")
+    name: Name = Field(default="", description="name in results; by default line_1, line_2, ...")
     from_body: str = Field(min_length=1, description="name of the body at one end")
     from_point_b_m: Vector = Field(default=ORIGIN, description="attachment on it, from its centre of mass, its body axes [m]")
     to_body: str = Field(min_length=1, description="name of the body at the other end")

@@ -5,13 +5,14 @@ from __future__ import annotations
 from pydantic import Field, model_validator
 
 from fieldline.records import Record, RecordError
+from fieldline.records.names import Name
 from fieldline.records.values import Direction
 
 
 class Magnetorquer(Record):
     """A magnetic torquer along one axis of the body."""
 
-    name: str = Field(default="", description="name in results; by default torquer_1, torquer_2, ...")
+    name: Name = Field(default="", description="name in results; by default torquer_1, torquer_2, ...")
     axis_b: Direction = Field(description="axis of the dipole, body axes; made a unit vector")
     moment_max_a_m2: float = Field(gt=0.0, description="largest dipole, either sign [A m^2]")
     time_constant_s: float = Field(

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from fieldline.records import Record, RecordError
+from fieldline.records.names import Name
 from fieldline.records.values import ZEROS, Dissipative, Inertia, Symmetric, Vector
 from fieldline.vehicle.hysteresis_rod import HysteresisRod
 from fieldline.vehicle.magnetorquer import Magnetorquer
@@ -34,7 +35,7 @@ ACTUATORS = {"magnetorquer": "torquer", "wheel": "wheel", "thruster": "thruster"
 class Vehicle(Record):
     """A rigid body or a point mass, with its loads, each off until its key is given, and its actuators."""
 
-    name: str = Field(min_length=1, description="name of the body, unique in the scenario")
+    name: Name = Field(min_length=1, description="name of the body, unique in the scenario")
     kind: Literal["rigid", "point"] = Field(default="rigid", description="a rigid body with attitude, or a point mass")
     mass_kg: float = Field(gt=0.0, description="mass [kg]")
     inertia_kg_m2: Inertia | None = Field(

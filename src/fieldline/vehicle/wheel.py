@@ -5,13 +5,14 @@ from __future__ import annotations
 from pydantic import Field, model_validator
 
 from fieldline.records import Record, RecordError
+from fieldline.records.names import Name
 from fieldline.records.values import Direction
 
 
 class Wheel(Record):
     """A wheel fixed to one axis of the body."""
 
-    name: str = Field(default="", description="name in results; by default wheel_1, wheel_2, ...")
+    name: Name = Field(default="", description="name in results; by default wheel_1, wheel_2, ...")
     axis_b: Direction = Field(description="spin axis, body axes; made a unit vector")
     momentum_n_m_s: float = Field(default=0.0, description="momentum about the axis at the start [N m s], relative to the body")
     momentum_max_n_m_s: float = Field(gt=0.0, description="largest momentum, either sign [N m s]; the wheel is saturated there")

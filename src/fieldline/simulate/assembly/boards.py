@@ -39,10 +39,12 @@ def boards_of(scenario) -> loop.Boards:
 
 
 def measurement_row(boards: loop.Boards, b: int) -> Measurement:
-    """What a plain Python law sees of body b: views that the loop keeps up to date."""
+    """What a plain Python law sees of body b: views that the loop keeps up to date, and that the law cannot write to."""
     rows = {name: getattr(boards, name)[b] for name in Measurement._fields}
     rows["sun_sensor"] = rows["sun_sensor"][: boards.faces[b]]
     rows["wheel_momentum"] = rows["wheel_momentum"][: boards.wheels[b]]
+    for row in rows.values():
+        row.flags.writeable = False  # of the view alone
     return Measurement(**rows)
 
 

@@ -47,7 +47,8 @@ class UserFunctions:
 
     def connect(self, shared) -> None:
         """Let plain functions see the state."""
-        self._state = shared.state
+        self._state = shared.state[:]
+        self._state.flags.writeable = False  # of the view alone
 
 
 def events_of(scenario, numbers: list[int]) -> loop.Events:

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import re
 from pathlib import Path
 
 import numpy as np
 
-from fieldline.errors import InputError, nearest
+from fieldline.errors import InputError, nearest, raised, shown
 from fieldline.simulate.loop.functions import SLOTS, Callback, Functions
 
 
@@ -24,8 +25,8 @@ def function_of(name: str, folder: Path, where: str):
     else:
         try:
             module = importlib.import_module(place)
-        except Exception as error:
-            raise InputError(f'{where} names "{name}", but importing {place} failed: {type(error).__name__}: {error}') from None
+        except (Exception, SystemExit) as error:
+            raise InputError(f'{where} names "{name}", but importing {place} failed: {raised(error)}.') from None
     found = getattr(module, attribute, None)
     if not callable(found):
         names = [n for n in dir(module) if callable(getattr(module, n)) and not n.startswith("_")]
@@ -43,8 +44,8 @@ def _module_of_file(path: Path, where: str):
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
-        raise InputError(f"{where} names {path.name}, which fails as it is loaded: {type(error).__name__}: {error}") from None
+    except (Exception, SystemExit) as error:
+        raise InputError(f"{where} names {path.name}, which fails as it is loaded: {raised(error)}.") from None
     return module
 
 
@@ -56,18 +57,16 @@ def is_compiled(function) -> bool:
 def compiled(function, signature, where: str):
     """The function compiled for a signature; InputError where Numba cannot, or where it returns something else."""
     from numba import config, njit
-    from numba.core.errors import NumbaError
 
     if config.DISABLE_JIT:
         return function
-    dispatcher = function if is_compiled(function) else njit(function)
     try:
+        dispatcher = function if is_compiled(function) else njit(function)
         dispatcher.compile(signature.args)
-    except NumbaError as error:
-        first = str(error).strip().splitlines()
+    except Exception as error:  # Numba raises its own errors, and Python's for a wrong count of arguments
         raise InputError(
-            f"{where} cannot be compiled by Numba: {_gist(first)} Write it with numbers, tuples and NumPy arrays alone, or set "
-            "compiled = false to run it as plain Python."
+            f"{where} cannot be compiled by Numba: {_gist(str(error))} It is called with {len(signature.args)} arguments. Write "
+            "it with numbers, tuples and NumPy arrays alone, or set compiled = false to run it as plain Python."
         ) from None
     returned = dispatcher.overloads[tuple(signature.args)].signature.return_type
     if returned != signature.return_type:
@@ -78,10 +77,13 @@ def compiled(function, signature, where: str):
     return dispatcher
 
 
-def _gist(lines: list[str]) -> str:
-    """The line of Numba's message that says most."""
-    telling = [line.strip() for line in lines if "rror" in line and not line.startswith("Failed")] or lines
-    return telling[0][:200].rstrip(".") + "."
+def _gist(message: str) -> str:
+    """What Numba's message says beyond that it failed, and in which line of the function."""
+    lines = [re.sub(r"\x1b\[[0-9;]*m", "", line).strip() for line in message.splitlines()]
+    lines = [line for line in lines if line and not line.startswith(("Failed in nopython", "During: resolving"))]
+    place = next((found[1] for line in lines if (found := re.search(r'File ".*", (line \d+)', line))), "")
+    telling = next((line for line in lines if not line.startswith("File ")), "no reason given")
+    return f"{shown(telling, 200).rstrip('.:')}{f', {place}' if place else ''}."
 
 
 class Host:
@@ -112,7 +114,10 @@ class Host:
             if answer is None:
                 self._replies[0] = 0
                 return 0
-            values = np.asarray(answer, dtype=float).ravel()
+            values = np.asarray(answer)
+            if np.iscomplexobj(values):
+                raise TypeError("it returned complex numbers; take their real parts")
+            values = np.asarray(values, dtype=float).ravel()
             self._replies[0] = values.size
             kept = min(values.size, self._reply.size)  # too many numbers are refused by their count
             self._reply[:kept] = values[:kept]

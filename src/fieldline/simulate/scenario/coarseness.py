@@ -17,6 +17,7 @@ from fieldline.simulate.scenario.body import SENSORS
 
 FINE_RAD = 0.1
 COARSE_RAD = 0.5
+ORBIT_COARSE_RAD = 0.2  # of the orbit in a step: beyond it rk4 loses kilometres within an orbit
 
 
 def fastest_rate(body) -> float:
@@ -41,6 +42,15 @@ def too_coarse(scenario, body) -> str | None:
     if scenario.integrator.method != "rk4" or rate * step <= COARSE_RAD:
         return None
     return f"is too coarse: {_angle(step, rate)}; a step of {fine_step(rate):.2g} s would do"
+
+
+def orbit_too_coarse(scenario, period_s: float) -> str | None:
+    """Why the step cannot follow the orbit, with the step that would do; None where it can."""
+    step = min(longest_step_s(scenario), scenario.time.output_step_s)
+    most = ORBIT_COARSE_RAD / (2.0 * np.pi) * period_s
+    if scenario.integrator.method != "rk4" or step <= most:
+        return None
+    return f"is too coarse for an orbit of {period_s:.5g} s; a step of {0.25 * most:.2g} s would do"
 
 
 def rather_coarse(scenario, body) -> str | None:

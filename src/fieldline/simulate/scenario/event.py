@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from fieldline.records import Record, RecordError
+from fieldline.records.names import Name
 from fieldline.vehicle.user_load import FunctionName
 
 THRESHOLDS = {"eclipse": None, "altitude": "altitude_km", "rate": "rate_deg_s", "user": "function"}
@@ -18,7 +19,7 @@ class Event(Record):
     kind: Literal["eclipse", "altitude", "rate", "user"] = Field(
         description='"eclipse": half of the Sun is hidden; "altitude", "rate": a threshold; "user": a function changes its sign'
     )
-    name: str = Field(default="", description="name in results; its kind by default")
+    name: Name = Field(default="", description="name in results; its kind by default")
     body: str = Field(default="", description="name of the body; the first by default")
     altitude_km: float | None = Field(default=None, ge=0.0, description='threshold of kind = "altitude", over the ellipsoid [km]')
     rate_deg_s: float | None = Field(

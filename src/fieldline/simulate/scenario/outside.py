@@ -12,7 +12,7 @@ import numpy as np
 from fieldline.errors import InputError, nearest, shown
 from fieldline.records.words import joined
 from fieldline.simulate.scenario.checks import actuators_missing
-from fieldline.simulate.scenario.coarseness import rather_coarse
+from fieldline.simulate.scenario.coarseness import orbit_too_coarse, rather_coarse
 
 MOST_STEPS = 1e10
 
@@ -60,7 +60,11 @@ def _span(scenario, states) -> Iterator[tuple[str, str]]:
     """The field model covers the end; the steps are of a number that ends."""
     from fieldline.simulate.scenario.states import period_s
 
-    length = scenario.time.length_s(period_s(*states[0]))
+    period = period_s(*states[0])
+    length = scenario.time.length_s(period)
+    coarse = orbit_too_coarse(scenario, min(period_s(*state) for state in states))
+    if coarse:
+        yield "integrator.step_s", coarse
     end = scenario.time.start + np.timedelta64(round(length * 1e9), "ns")
     model = scenario.environment.field_model()
     if model is not None:

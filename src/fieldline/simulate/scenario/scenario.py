@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from pydantic import Field, PrivateAttr, model_validator
 
 from fieldline.records import Record, RecordError
+from fieldline.records.names import Name
 from fieldline.simulate.scenario.body import Body
 from fieldline.simulate.scenario.environment import Environment
 from fieldline.simulate.scenario.event import Event
@@ -29,7 +30,7 @@ class Scenario(Record):
     `fieldline scenario schema` and the page on scenarios tell of every key, with its unit and default.
     """
 
-    name: str = Field(default="scenario", min_length=1, description="name of the scenario")
+    name: Name = Field(default="scenario", min_length=1, description="name of the scenario")
     description: str = Field(default="", description="what it is about")
     seed: int = Field(default=0, ge=0, le=2**63 - 1, description="seed of everything that is drawn at random")
     time: Span = Field(description="start, duration and output of the run")
@@ -109,6 +110,16 @@ class Scenario(Record):
     def folder(self) -> Path:
         """Where the files that the scenario names are looked for."""
         return self._folder
+
+    def files(self) -> list[str]:
+        """Names of the files that it needs beside it: orbits, Earth orientation, the user's functions."""
+        orbits = [self.orbit, *(body.orbit for body in self.body)]
+        named = [one.tle for one in orbits if one is not None and one.tle is not None]
+        named += [self.environment.earth_orientation or ""]
+        functions = [one.law for one in self.software] + [one.function or "" for one in self.event]
+        functions += [one.function for body in self.body for one in body.load]
+        named += [name.rpartition(":")[0] for name in functions if ".py:" in name]
+        return sorted({name.strip() for name in named if name.strip() and "\n" not in name.strip()})
 
     @property
     def sha256(self) -> str:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, field_validator, model_validator
 
 from fieldline.records import Record, RecordError
+from fieldline.records.names import Name
 from fieldline.records.words import came
 from fieldline.vehicle.user_load import is_function_name
 
@@ -31,7 +32,7 @@ def _numeric(value: Any) -> bool:
 class Software(Record):
     """A task that reads the measurement of a body and commands its actuators, at its own rate."""
 
-    name: str = Field(default="", description="name in results and messages; the law's name by default")
+    name: Name = Field(default="", description="name in results and messages; the law's name by default")
     body: str = Field(default="", description="name of the body; may be left out where there is one body")
     law: str = Field(
         min_length=1, description='name of a law of the library, or the user\'s "file.py:function" or "module:function"'

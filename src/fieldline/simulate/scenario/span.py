@@ -13,6 +13,7 @@ from fieldline.records import Record, RecordError
 
 SECONDS_PER_DAY = 86400.0
 MOST_DAYS = 36525.0
+LEAST_S = 1e-6  # times are kept to the nanosecond
 
 
 def _utc_text(value: Any) -> str:
@@ -34,9 +35,9 @@ class Span(Record):
     start_utc: Annotated[str, BeforeValidator(_utc_text), WithJsonSchema({"type": "string", "format": "date-time"})] = Field(
         description="start of the run, UTC, ISO 8601"
     )
-    duration_s: float | None = Field(default=None, gt=0.0, description="length of the run [s]; this or duration_orbits")
+    duration_s: float | None = Field(default=None, ge=LEAST_S, description="length of the run [s]; this or duration_orbits")
     duration_orbits: float | None = Field(default=None, gt=0.0, description="length of the run in orbits of the first body")
-    output_step_s: float = Field(default=10.0, gt=0.0, description="time between the samples that are kept [s]")
+    output_step_s: float = Field(default=10.0, ge=LEAST_S, description="time between the samples that are kept [s]")
 
     @model_validator(mode="after")
     def _one_duration(self):

@@ -32,11 +32,15 @@ def _slip(text: str, source: str, message: str) -> str:
         return f"{source}: the file ends too early ({what}). Is a quote, bracket or value missing at its end?"
     number = int(place[1])
     line = lines[number - 1]
-    return f'{source} line {number}: {what}, in "{shown(line.strip(), 60)}". {_guess(line)}'
+    return f'{source} line {number}: {what}, in "{shown(line.strip(), 60)}". {_guess(line, what)}'
 
 
-def _guess(line: str) -> str:
+def _guess(line: str, what: str) -> str:
     """What is commonly meant by such a line."""
+    if what.startswith(("Cannot overwrite", "Cannot declare")):
+        return "It stands in the file twice: leave one out, or begin each table of a list with [[name]]."
+    if what.startswith("Invalid date"):
+        return "A date is written 2026-03-01T00:00:00Z: year, month, day; is there such a day?"
     bare = line.split("#")[0].strip()
     key, equals, value = (part.strip() for part in bare.partition("="))
     if bare.startswith("[") and not bare.endswith("]"):
