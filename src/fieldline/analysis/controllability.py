@@ -64,7 +64,7 @@ class Steady(NamedTuple):
 
     controllable: bool
     margin: float  # smallest over largest singular value of (3), scaled
-    lost: np.ndarray  # (p,) the reference that cannot be held, or is hardest to hold, scaled to length 1
+    lost: np.ndarray  # (p,) scaled, length 1: references with a part along it are hard or impossible to hold; zero: all are
 
 
 def orbital_scale(mean_motion_rad_s: float, angle_rad: float = 0.01) -> np.ndarray:
@@ -128,7 +128,9 @@ def steady_state(F, G, H, *, rate: float, scale=1.0) -> Steady:
     rows = f.shape[0] + h.shape[0]
     values = np.concatenate([values, np.zeros(rows - len(values))])
     lost = left[f.shape[0] :, rows - 1]
-    return Steady(bool(values[-1] > RANK_TOLERANCE * values[0]), float(values[-1] / values[0]), lost / np.linalg.norm(lost))
+    length = float(np.linalg.norm(lost))
+    lost = lost / length if length > 0.0 else lost
+    return Steady(bool(values[-1] > RANK_TOLERANCE * values[0]), float(values[-1] / values[0]), lost)
 
 
 def removable(F, G, lost: int, *, rate: float, scale=1.0, of: Sequence[int] | None = None, threshold: float = THRESHOLD):

@@ -17,7 +17,7 @@ MICROTESLA = 1e6
 HOUR_S = 3600.0
 DAY_S = 86400.0
 PAIRS = {"I1": AXIS_COLOURS[0], "I2": AXIS_COLOURS[1], "I3": AXIS_COLOURS[2]}
-LEAST_SPANS = (2.0, 1e-3, 1.0, 0.5)  # m, µrad, A, N: less is rounding
+LEAST_SPANS = (2.0, 1.0, 1.0, 0.5)  # m, nrad, A, N: less is rounding
 DARK = 1e-17  # margins below this are drawn at it: a zero has no logarithm
 
 
@@ -60,7 +60,7 @@ def model_figure(dataset: Any) -> Figure:
         columns = dataset[dataset[name].dims[1]].values
         panel.set_xticks(range(len(columns)), columns, rotation=90, fontsize=6.5)
         panel.set_yticks(range(12), dataset["state"].values if name == "F" else [""] * 12, fontsize=6.5)
-    figure.subplots_adjust(bottom=0.2, left=0.1)
+    figure.subplots_adjust(bottom=0.24, left=0.1)
     return figure
 
 
@@ -99,10 +99,10 @@ def lqr_figure(dataset: Any) -> Figure:
     for k, name in enumerate("xyz"):
         line(axes[0, 0], seconds, dataset["reference_m"].values[:, k], GREY, dashed=True)
         line(axes[0, 0], seconds, state[:, 2 * k], AXIS_COLOURS[k], name, width=1.3)
-        line(axes[1, 0], seconds, 1e6 * state[:, 6 + 2 * k], AXIS_COLOURS[k], f"ψ{k + 1}", width=1.2)
+        line(axes[1, 0], seconds, 1e9 * state[:, 6 + 2 * k], AXIS_COLOURS[k], f"ψ{k + 1}", width=1.2)
     axes[0, 0].set_title(dataset.attrs["title"])
     axes[0, 0].set_ylabel("place [m]")
-    axes[1, 0].set_ylabel("angle [µrad]")
+    axes[1, 0].set_ylabel("angle [nrad]")
     names = [str(name) for name in dataset["control"].values]
     wires = [k for k, name in enumerate(names) if name.startswith("I")]
     for k in wires[::2]:  # the two of a pair lie on each other
@@ -115,7 +115,7 @@ def lqr_figure(dataset: Any) -> Figure:
     for k in rest:
         line(axes[3, 0], seconds, control[:, k], INK, names[k], width=1.2)
     axes[3, 0].set_ylabel("thrust [N]")
-    drawn = state[:, :6:2], 1e6 * state[:, 6::2], control[:, wires], control[:, rest]
+    drawn = state[:, :6:2], 1e9 * state[:, 6::2], control[:, wires], control[:, rest]
     for panel, values, least in zip(axes[:, 0], drawn, LEAST_SPANS, strict=True):
         panel.set_ylim(*room(values, least=least))
     for panel in axes[:3, 0]:
