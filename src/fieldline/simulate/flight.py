@@ -96,15 +96,21 @@ class Flight:
         except KeyboardInterrupt:
             self.interrupted = True
         except Exception as error:
-            if self.shared.culprit[2] == 0:
-                raise
-            self.outcome = RAISED_COMPILED[int(self.shared.culprit[2])]
-            self.host.error = error
+            self._failed(error)
         if isinstance(self.host.error, KeyboardInterrupt):
             self.interrupted = True
         elif self.host.error is not None and self.outcome in (Outcome.PAUSED, Outcome.DONE):
             self.outcome = Outcome.LOAD_RAISED  # in the last look at the loads, for the record
         return self.outcome
+
+    def _failed(self, error: Exception) -> None:
+        """Blame a compiled function of the user's; what an interruption breaks in the compiler is no fault."""
+        if isinstance(self.host.error, KeyboardInterrupt):
+            return
+        if self.shared.culprit[2] == 0:
+            raise error
+        self.outcome = RAISED_COMPILED[int(self.shared.culprit[2])]
+        self.host.error = error
 
     def _fly_on(self, budget: int) -> int:
         """Some steps of the loop."""

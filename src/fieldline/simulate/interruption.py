@@ -30,12 +30,20 @@ def noted(host) -> Iterator[None]:
 
     def note(number, frame):
         signal.signal(signal.SIGINT, usual)
-        if is_compiling():
-            raise KeyboardInterrupt  # nothing flies yet, and compiling takes long
         host.error = KeyboardInterrupt()
+        if is_compiling():
+            raise host.error  # nothing flies yet, and compiling takes long
 
+    def unraised(unraisable, tell=sys.unraisablehook):
+        """Say nothing of an interruption that the compiler could not pass on; it is noted."""
+        if not isinstance(unraisable.exc_value, KeyboardInterrupt):
+            tell(unraisable)
+
+    told = sys.unraisablehook
     signal.signal(signal.SIGINT, note)
+    sys.unraisablehook = unraised
     try:
         yield
     finally:
+        sys.unraisablehook = told
         signal.signal(signal.SIGINT, usual)
