@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fieldline.cases.sao_1982 import ANNEX_RUNS, PRINTED_SPIN_RAD_S, annex_run, spin, thruster
+from fieldline.cases.sao_1982.dumbbell import beads_on, dumbbell
 from fieldline.cases.sao_1982.printed_tables import FIGURE_3_2A, FIGURE_3_4C, REPAIRED
 from fieldline.errors import InputError
 
@@ -159,6 +160,38 @@ def test_thruster_does_not_see_the_wire():
     assert np.abs(usual["phi"].values - stiff["phi"].values).max() < 1.8e-6
 
 
+def test_a_line_with_mass_becomes_the_line_without():
+    """Section 3.2: the spinning case and the thruster on a string of beads, the lighter the closer to two masses."""
+    free = spin(damping=0.0)
+    for nodes in (1, 4):
+        beaded = spin(damping=0.0, nodes=nodes, line_mass_kg=1.0)
+        assert np.abs(beaded["theta"].values - free["theta"].values).max() < 3e-9
+        assert np.abs(beaded["psi_orbital"].values - free["psi_orbital"].values).max() < 6e-9
+        assert beaded.sizes["body"] == 2 + nodes
+    free = thruster(damping=0.0)
+    away = []
+    for mass in (1.0, 0.1, 0.01):
+        beaded = thruster(damping=0.0, nodes=1, line_mass_kg=mass)
+        away.append(float(np.abs(beaded["theta"].values - free["theta"].values).max()))
+    assert away[0] < 3e-7 and away[1] < 0.4 * away[0] and away[2] < 0.1 * away[1]
+
+
+def test_a_string_of_beads_is_in_balance():
+    two = dumbbell(100.0, 86363.0, 6578e3, 6598e3, 3.986013e14)
+    beads = beads_on(two, 7, 160.0, 3.986013e14)
+    rate, radius = beads.dumbbell.orbital_rate_rad_s, 6598e3
+    assert beads.tension_n[-1] == pytest.approx(86363.0 * (rate**2 * radius - 3.986013e14 / radius**2), rel=1e-7)
+    assert (np.diff(beads.tension_n) > 0.0).all() and np.diff(beads.radius_m) == pytest.approx(np.full(6, 2500.0))
+    light = beads_on(two, 7, 1e-6, 3.986013e14)
+    assert light.tension_n == pytest.approx(np.full(8, two.tension_n), rel=1e-7)
+    # Along the string from the subsatellite: half a bead's share more or less, the line's own weight over its length.
+    line = 160.0 / 20e3 * (3.0 * rate**2) * 0.5 * (19.98e3**2)
+    assert beads.tension_n[-1] - beads.tension_n[0] == pytest.approx(line, rel=0.01)
+    run = spin(damping=0.0, nodes=2, line_mass_kg=50.0, duration_s=20.0, output_step_s=1.0)
+    # The plant's GM, 2e-6 above the report's, pulls a bead of 25 kg by 5e-4 N more.
+    assert np.abs(run["tension"].values / run.attrs["tension_n"] - 1.0).max() < 2e-4
+
+
 def test_annex_unspun():
     run = annex_run("unspun")
     rate = run["omega_b"].sel(seconds=[1.0, 5.0, 10.0, 15.0, 20.0]).values[:, 2] / run.attrs["orbital_rate_rad_s"]
@@ -253,6 +286,15 @@ def test_every_annex_run_has_a_name_that_works():
         (lambda: spin(inclination_deg=190.0), "inclination_deg"),
         (lambda: spin(eccentricity=0.3), "eccentricity"),
         (lambda: thruster(offset_m=0.0), "offset_m"),
+        (lambda: spin(anomaly={"anomaly_mgals": 1.0}), "anomaly_mgal"),
+        (lambda: spin(air={"drag_area_m2": 1.0, "density_kg_m3": 1e-10}), "air lacks reference_height_m, scale_height_m"),
+        (
+            lambda: spin(air=dict.fromkeys(("drag_area_m2", "density_kg_m3", "reference_height_m", "scale_height_m"), 0.0)),
+            "scale",
+        ),
+        (lambda: thruster(line_mass_kg=1.0), "needs nodes"),
+        (lambda: thruster(nodes=2.5, line_mass_kg=1.0), "whole number"),
+        (lambda: thruster(nodes=2), "line_mass_kg"),
         (lambda: thruster(duration_s=-1.0), "duration_s"),
     ],
 )

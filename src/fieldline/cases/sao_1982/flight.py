@@ -7,7 +7,9 @@ centre of mass, is straight below it at r1. With e small, x' = rbar n e is added
     attachment-rigid   the same, the centre of mass moving as a point of the rigidly turning pair, n x r       (2)
     centre             centre of mass at r1, moving at r1 n                                                  (3)
 
-The unstretched length is that which balances the tension of the pair at the length from the Shuttle to the attachment.
+The unstretched length is that which balances the tension of the pair at the length from the Shuttle to the attachment. A
+line with mass is a string of beads, point masses on lines without mass; they start on the straight line, turning with the
+pair, and feel the plant's point Earth alone (GM 2e-6 above GM').
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.cases.erbs_like import number
-from fieldline.cases.sao_1982.dumbbell import Dumbbell, critical_damping, dumbbell, natural_length
+from fieldline.cases.sao_1982.dumbbell import Beads, Dumbbell, critical_damping, dumbbell, natural_length
 from fieldline.cases.sao_1982.euler_angles import body_rate, direction_cosines
 from fieldline.cases.sao_1982.surroundings import EARTH_RADIUS_M, GM_M3_S2, J2, load_parameters
 from fieldline.errors import InputError, nearest
@@ -47,6 +49,7 @@ class Pair(NamedTuple):
     stiffness_n: float  # EA
     damping: float | str  # b [N s/m] or "critical"
     angular_damping_n_m_s: float = 0.0
+    beads: Beads | None = None
 
 
 class Start(NamedTuple):
@@ -90,18 +93,49 @@ def states(pair: Pair, start: Start, inclination_deg: float, eccentricity: float
     moving = centre if start.placement == "attachment-rigid" else lower
     places = np.array([[two.upper_radius_m, 0.0, 0.0], centre])
     velocities = n * np.cross([0.0, 0.0, 1.0], [places[0], moving])
-    velocities[:, 0] += two.mean_radius_m * n * number("eccentricity", eccentricity, 0.0, 0.05)
+    velocities[:, 0] += outward_rate(pair, eccentricity)
     return places @ axes, velocities @ axes, lever @ axes
 
 
-def line_constants(pair: Pair, length_m: float) -> tuple[float, float]:
-    """Unstretched length [m] and damping b [N s/m] of the line at a length."""
-    rest = natural_length(length_m, pair.dumbbell.tension_n, pair.stiffness_n)
+def outward_rate(pair: Pair, eccentricity: float) -> float:
+    """rbar n e [m/s], which all masses start with."""
+    two = pair.dumbbell
+    return two.mean_radius_m * two.orbital_rate_rad_s * number("eccentricity", eccentricity, 0.0, 0.05)
+
+
+def damping_of(pair: Pair, rest_m: float) -> float:
+    """Damping b [N s/m] of the whole line."""
     if pair.damping == "critical":
-        return rest, critical_damping(pair.dumbbell, rest, pair.stiffness_n)
+        return critical_damping(pair.dumbbell, rest_m, pair.stiffness_n)
     if isinstance(pair.damping, str):
         raise InputError(f'damping must be "critical" or a number [N s/m]; got "{pair.damping}".')
-    return rest, number("damping", pair.damping, 0.0)
+    return number("damping", pair.damping, 0.0)
+
+
+def line_records(pair: Pair, length_m: float) -> list[dict]:
+    """The line's stretches from the subsatellite up, each of the length that balances its tension."""
+    beads = pair.beads
+    tensions = [pair.dumbbell.tension_n] if beads is None else beads.tension_n
+    rests = [natural_length(length_m / len(tensions), float(tension), pair.stiffness_n) for tension in tensions]
+    whole = sum(rests)
+    names = ["subsatellite", *bead_names(pair), "shuttle"]
+    found = [
+        {
+            "from_body": below,
+            "to_body": above,
+            "rest_length_m": rest,
+            "stiffness_n": float(pair.stiffness_n),
+            "damping_n_s": damping_of(pair, whole) * whole,
+        }
+        for below, above, rest in zip(names[:-1], names[1:], rests, strict=True)
+    ]
+    found[0]["from_point_b_m"] = floats(pair.lever_b_m)
+    return found
+
+
+def bead_names(pair: Pair) -> list[str]:
+    """Names of the beads from below."""
+    return [f"bead_{k + 1}" for k in range(0 if pair.beads is None else pair.beads.count)]
 
 
 def scenario_of(
@@ -124,37 +158,28 @@ def scenario_of(
     "upper_drag_area_m2", C_d A of the Shuttle, beside the keys of NO_AIR, which are the subsatellite's.
     """
     from fieldline.simulate.scenario import Scenario
-    from fieldline.simulate.scenario.states import orbital_axes
 
     places, velocities, lever = states(pair, start, inclination_deg, eccentricity)
-    rest, damping = line_constants(pair, float(np.linalg.norm(places[0] - places[1] - lever)))
-    dcm_io, turn = orbital_axes(places[0], velocities[0])
-    offset = dcm_io.T @ (places[1] - places[0])
-    offset_rate = dcm_io.T @ (velocities[1] - velocities[0]) - np.cross(turn, offset)
-    q_bi = quaternion_from_dcm(direction_cosines(start.theta, start.psi, start.phi) @ orbit_axes(inclination_deg))
+    lines = line_records(pair, float(np.linalg.norm(places[0] - places[1] - lever)))
+    bodies = [
+        {"name": "shuttle", "kind": "point", "mass_kg": pair.dumbbell.upper_mass_kg},
+        {
+            "name": "subsatellite",
+            "mass_kg": pair.dumbbell.lower_mass_kg,
+            "inertia_kg_m2": floats(pair.inertia_kg_m2),
+            "attitude": {"quaternion_bi": floats(start_quaternion(start, inclination_deg))},
+            "rate_deg_s": floats(np.degrees(start.rate_b)),
+            "disturbance_torque_b_n_m": floats(torque_b_n_m),
+        },
+    ]
     upper_air = {**air, "drag_area_m2": air["upper_drag_area_m2"]} if air and "upper_drag_area_m2" in air else None
-    shuttle = {
-        "name": "shuttle",
-        "kind": "point",
-        "mass_kg": pair.dumbbell.upper_mass_kg,
-        "load": _loads(pair.dumbbell.upper_mass_kg, oblate, anomaly, upper_air),
-    }
-    subsatellite = {
-        "name": "subsatellite",
-        "mass_kg": pair.dumbbell.lower_mass_kg,
-        "inertia_kg_m2": floats(pair.inertia_kg_m2),
-        "attitude": {"quaternion_bi": floats(q_bi)},
-        "rate_deg_s": floats(np.degrees(start.rate_b)),
-        "offset_o_m": floats(offset),
-        "offset_rate_o_m_s": floats(offset_rate),
-        "disturbance_torque_b_n_m": floats(torque_b_n_m),
-        "load": _loads(pair.dumbbell.lower_mass_kg, oblate, anomaly, air),
-    }
+    for body, its_air in zip(bodies, (upper_air, air), strict=True):
+        body["load"] = _loads(body["mass_kg"], oblate, anomaly, its_air)
     if pair.angular_damping_n_m_s > 0.0:
-        joint = dict(zip(("x_m", "y_m", "z_m"), floats(pair.lever_b_m), strict=True))
-        joint |= {"rest_length_m": rest, "damping_n_m_s": float(pair.angular_damping_n_m_s)}
-        shuttle["load"].append({"function": f"{HERE}.attachment:far_end"})
-        subsatellite["load"].append({"function": f"{HERE}.attachment:joint_damping", "parameters": joint})
+        _add_joint(pair, lines, *bodies)
+    string, string_places, string_velocities = _string(pair, places, velocities, lever, inclination_deg, eccentricity)
+    everything = bodies + string
+    _put_beside(everything, np.vstack([places, string_places]), np.vstack([velocities, string_velocities]))
     return Scenario.from_dict(
         {
             "name": name,
@@ -166,20 +191,49 @@ def scenario_of(
             "integrator": EXACT,
             "environment": {"gravity": "point", "uniform_field_i_tesla": [1e-9, 0.0, 0.0]},
             "orbit": {"state": {"position_km": floats(1e-3 * places[0]), "velocity_km_s": floats(1e-3 * velocities[0])}},
-            "body": [shuttle, subsatellite],
-            "line": [
-                {
-                    "from_body": "subsatellite",
-                    "from_point_b_m": floats(pair.lever_b_m),
-                    "to_body": "shuttle",
-                    "rest_length_m": rest,
-                    "stiffness_n": float(pair.stiffness_n),
-                    "damping_n_s": damping * rest,
-                }
-            ],
+            "body": everything,
+            "line": lines,
         },
         name,
     )
+
+
+def start_quaternion(start: Start, inclination_deg: float) -> np.ndarray:
+    """q_bi (4,) of the subsatellite."""
+    return quaternion_from_dcm(direction_cosines(start.theta, start.psi, start.phi) @ orbit_axes(inclination_deg))
+
+
+def _string(pair: Pair, places, velocities, lever, inclination_deg: float, eccentricity: float):
+    """Records, places (n, 3) [m] and velocities (n, 3) [m/s] of the beads, even on the line from below and turning with it."""
+    names = bead_names(pair)
+    part = (np.arange(len(names)) + 1.0)[:, None] / (len(names) + 1)
+    below = places[1] + lever
+    there = below + part * (places[0] - below)
+    axes = orbit_axes(inclination_deg)
+    moving = pair.dumbbell.orbital_rate_rad_s * np.cross(axes[2], there) + outward_rate(pair, eccentricity) * axes[0]
+    mass = 0.0 if pair.beads is None else pair.beads.mass_kg
+    return [{"name": name, "kind": "point", "mass_kg": mass} for name in names], there, moving
+
+
+def _put_beside(bodies: list[dict], places, velocities) -> None:
+    """Places and velocities of all bodies but the first, from it, in its orbital axes."""
+    from fieldline.simulate.scenario.states import orbital_axes
+
+    dcm_io, turn = orbital_axes(places[0], velocities[0])
+    offsets = (places - places[0]) @ dcm_io
+    rates = (velocities - velocities[0]) @ dcm_io - np.cross(turn, offsets)
+    for body, offset, rate in zip(bodies[1:], offsets[1:], rates[1:], strict=True):
+        body |= {"offset_o_m": floats(offset), "offset_rate_o_m_s": floats(rate)}
+
+
+def _add_joint(pair: Pair, lines: list[dict], shuttle: dict, subsatellite: dict) -> None:
+    """Angular damping at the attachment; it sees a far end that is the Shuttle."""
+    if len(lines) > 1:
+        raise InputError("angular damping is there for a line without beads alone, as in the report.")
+    joint = dict(zip(("x_m", "y_m", "z_m"), floats(pair.lever_b_m), strict=True))
+    joint |= {"rest_length_m": lines[0]["rest_length_m"], "damping_n_m_s": float(pair.angular_damping_n_m_s)}
+    shuttle["load"].append({"function": f"{HERE}.attachment:far_end"})
+    subsatellite["load"].append({"function": f"{HERE}.attachment:joint_damping", "parameters": joint})
 
 
 def _loads(mass_kg: float, oblate: bool, anomaly: dict | None, air: dict | None) -> list[dict]:

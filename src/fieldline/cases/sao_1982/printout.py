@@ -2,7 +2,8 @@
 
 Along, across, radial: the attachment from the Shuttle, in a, b, c of the Shuttle at that time (`euler_angles`): b along the
 track, c against the plane, a up; the annex's RADIAL, of a subsatellite below, is negative. Tension (TEN) is the elastic part
-k (l - l0), friction (FRICT) is b dl/dt; both are zero where the line is slack.
+k (l - l0), friction (FRICT) is b dl/dt; both are zero where the line is slack. On a line with beads they are those of the
+stretch next to the subsatellite.
 """
 
 from __future__ import annotations
@@ -34,9 +35,10 @@ def printed(flown: xarray.Dataset, scenario, case: str, title: str, settings: di
     momentum_b = omega_b @ np.array(body.inertia_kg_m2)
     arm_b = np.array(line.from_point_b_m)
     lever = _to_inertial(cosines, arm_b)
-    chord = place[:, 0] - place[:, 1] - lever
+    far = scenario.index_of(line.to_body)
+    chord = place[:, far] - place[:, 1] - lever
     swing = _to_inertial(cosines, np.cross(omega_b, arm_b))
-    chord_rate = velocity[:, 0] - velocity[:, 1] - swing
+    chord_rate = velocity[:, far] - velocity[:, 1] - swing
     length = np.linalg.norm(chord, axis=1)
     rate = (chord * chord_rate).sum(axis=1) / length
     taut = length > line.rest_length_m
@@ -44,7 +46,7 @@ def printed(flown: xarray.Dataset, scenario, case: str, title: str, settings: di
     friction = np.where(taut, line.damping_n_s * rate / line.rest_length_m, 0.0)
     axes = shuttle_axes(place[:, 0], velocity[:, 0])
     turned = cosines @ np.swapaxes(axes, -1, -2)
-    displacement = np.einsum("tij,tj->ti", axes, -chord)
+    displacement = np.einsum("tij,tj->ti", axes, place[:, 1] + lever - place[:, 0])
     arm = lever / np.linalg.norm(lever, axis=1, keepdims=True)
     pull = chord / length[:, None]
     away = np.arctan2(np.linalg.norm(np.cross(arm, pull), axis=1), (arm * pull).sum(axis=1))
@@ -86,8 +88,8 @@ def printed(flown: xarray.Dataset, scenario, case: str, title: str, settings: di
         "case": case,
         "source": SOURCE,
         "settings_json": settings_text(settings),
-        "natural_length_m": line.rest_length_m,
-        "damping_n_s_m": line.damping_n_s / line.rest_length_m,
+        "natural_length_m": sum(one.rest_length_m for one in scenario.line),
+        "damping_n_s_m": line.damping_n_s / sum(one.rest_length_m for one in scenario.line),
         "scenario_toml": scenario.to_toml(),
         "outcome": flown.attrs["outcome"],
         "provenance_json": flown.attrs["provenance_json"],

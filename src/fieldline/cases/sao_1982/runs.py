@@ -14,9 +14,10 @@ import numpy as np
 
 from fieldline.analysis.spinning_subsatellite import SpinningSubsatellite, spin_for_angle
 from fieldline.cases.erbs_like import number
-from fieldline.cases.sao_1982.dumbbell import critical_angular_damping
+from fieldline.cases.sao_1982.dumbbell import beads_on, critical_angular_damping
 from fieldline.cases.sao_1982.flight import Pair, Start, pair_at, scenario_of, turning_start
 from fieldline.cases.sao_1982.printout import printed
+from fieldline.cases.sao_1982.surroundings import GM_M3_S2
 from fieldline.errors import InputError, nearest
 
 BRANCHES = {"inverted": -1.0, "hanging": 1.0}
@@ -49,6 +50,8 @@ def spin(
     oblate: bool = False,
     anomaly: dict | None = None,
     air: dict | None = None,
+    nodes: int = 0,
+    line_mass_kg: float = 0.0,
 ):
     """The spinning subsatellite that stands at theta against the orbit normal (s. 3.1.2), flown by the plant.
 
@@ -60,7 +63,8 @@ def spin(
     spin_rad_s : phi'; by default that of the stationary motion. The report's number is PRINTED_SPIN_RAD_S; it is the
         hanging branch's rate about the axis, and serves the inverted one because C = 2 A.
     placement : where masses and attachment start, see `flight`. damping : b [N s/m] or "critical".
-    oblate, anomaly, air : J2, a mass anomaly, drag; see `surroundings`. The rest is in the names.
+    oblate, anomaly, air : J2, a mass anomaly, drag; see `surroundings`.
+    nodes, line_mass_kg : beads that carry the line's mass (s. 3.2); damp such a line little, its steps get short otherwise.
 
     Returns
     -------
@@ -72,7 +76,8 @@ def spin(
     if branch not in BRANCHES:
         raise InputError(f'unknown branch "{branch}"; {nearest(str(branch), BRANCHES)}')
     theta = np.radians(number("theta_deg", theta_deg, 1e-3, 180.0 - 1e-3))
-    two = pair_at(altitude_m, lower_mass_kg, upper_mass_kg, length_m)
+    beads = beads_on(pair_at(altitude_m, lower_mass_kg, upper_mass_kg, length_m), nodes, line_mass_kg, GM_M3_S2)
+    two = beads.dumbbell
     body = SpinningSubsatellite(
         axial_inertia_kg_m2=axial_inertia_kg_m2,
         transverse_inertia_kg_m2=transverse_inertia_kg_m2,
@@ -84,7 +89,7 @@ def spin(
     stationary = spin_for_angle(body, theta if branch == "hanging" else -theta)
     about = stationary if spin_rad_s is None else number("spin_rad_s", spin_rad_s, -100.0, 100.0)
     inertia = (transverse_inertia_kg_m2, transverse_inertia_kg_m2, axial_inertia_kg_m2)
-    pair = Pair(two, inertia, (0.0, 0.0, BRANCHES[branch] * offset_m), stiffness_n, damping)
+    pair = Pair(two, inertia, (0.0, 0.0, BRANCHES[branch] * offset_m), stiffness_n, damping, beads=beads)
     start = turning_start(theta, 0.5 * np.pi, 0.0, 0.0, two.orbital_rate_rad_s, about, placement)
     scenario = scenario_of(
         "sao_1982_spin",
@@ -113,16 +118,19 @@ def thruster(
     offset_m: float = OFFSET_M,
     stiffness_n: float = STIFFNESS_N,
     damping: float | str = "critical",
+    nodes: int = 0,
+    line_mass_kg: float = 0.0,
 ):
     """A subsatellite at rest on its tether, spun up by a constant torque about the axis along the tether (s. 3.3).
 
     Starts at theta = psi = 90 deg and phi = 0, turning with the orbit about its normal: psi' = n and no other rate, which is
-    what reproduces the printed table. Masses, length and height are the report's. Returns a Dataset as `spin` does.
+    what reproduces the printed table. Masses, length and height are the report's; nodes and the Dataset as in `spin`.
     """
     settings = dict(locals())
-    two = pair_at(ALTITUDE_M, SUBSATELLITE_KG, SHUTTLE_KG, LENGTH_M)
+    beads = beads_on(pair_at(ALTITUDE_M, SUBSATELLITE_KG, SHUTTLE_KG, LENGTH_M), nodes, line_mass_kg, GM_M3_S2)
+    two = beads.dumbbell
     inertia = (transverse_inertia_kg_m2, transverse_inertia_kg_m2, axial_inertia_kg_m2)
-    pair = Pair(two, inertia, (0.0, 0.0, number("offset_m", offset_m, 1e-6)), stiffness_n, damping)
+    pair = Pair(two, inertia, (0.0, 0.0, number("offset_m", offset_m, 1e-6)), stiffness_n, damping, beads=beads)
     right = 0.5 * np.pi
     scenario = scenario_of(
         "sao_1982_thruster",

@@ -20,7 +20,9 @@ from math import exp, pi, sqrt
 import numpy as np
 from numba import njit
 
+from fieldline.cases.erbs_like import number
 from fieldline.constants import EARTH_GM_M3_S2
+from fieldline.errors import InputError, nearest
 from fieldline.frames.vectors import add, axpy, dot, norm, scale, sub
 
 GM_M3_S2 = 3.986013e14
@@ -77,5 +79,24 @@ def surroundings_of_1978(t, state, parameters):
 
 
 def load_parameters(mass_kg: float, *, j2: float = 0.0, anomaly=None, air=None) -> dict[str, float]:
-    """The parameters of `surroundings_of_1978`, in its order; anomaly and air as NO_ANOMALY and NO_AIR, or None."""
-    return {"mass_kg": mass_kg, "j2": j2} | (anomaly or NO_ANOMALY) | (air or NO_AIR)
+    """The parameters of `surroundings_of_1978`, in its order.
+
+    anomaly, air : every key of NO_ANOMALY and of NO_AIR, or None. Errors: InputError for others, missing ones, no numbers.
+    """
+    whole = _whole("anomaly", anomaly, NO_ANOMALY) | _whole("air", air, NO_AIR)
+    if whole["scale_height_m"] <= 0.0:
+        raise InputError(f'air["scale_height_m"] must be positive; got {whole["scale_height_m"]:g}.')
+    return {"mass_kg": float(mass_kg), "j2": j2} | whole
+
+
+def _whole(name: str, given, pattern: dict[str, float]) -> dict[str, float]:
+    """The given numbers in the pattern's order, or the pattern."""
+    if given is None:
+        return pattern
+    for key in given:
+        if key not in pattern:
+            raise InputError(f'unknown key "{key}" in {name}; {nearest(str(key), pattern)}')
+    missing = [key for key in pattern if key not in given]
+    if missing:
+        raise InputError(f"{name} lacks {', '.join(missing)}; give {', '.join(pattern)}.")
+    return {key: number(f'{name}["{key}"]', given[key], -1e12, 1e12) for key in pattern}
