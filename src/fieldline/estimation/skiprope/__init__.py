@@ -6,6 +6,10 @@
     reading = read_cone(seconds, tuning.filtered, geometry, tuning.frequency_hz)
     tether_azimuth(reading, seconds), midpoint_deflection(reading.amplitude_rad, length_m)
 
+or, beyond the source, by least squares without a filter,
+
+    cone_at(harmonic_cone(seconds, field_b, geometry, 0.005), seconds)
+
 Source: Polites (1991), NASA TP-3123.
 """
 
@@ -20,6 +24,15 @@ from fieldline.estimation.skiprope.bandpass import (
 )
 from fieldline.estimation.skiprope.coning import axes_about, despun
 from fieldline.estimation.skiprope.cycles import extremes, fit_cycles, zero_crossings
+from fieldline.estimation.skiprope.harmonic import (
+    HarmonicCone,
+    circular_parts,
+    cone_at,
+    fit_harmonics,
+    harmonic_cone,
+    refined_frequency,
+    smoothed,
+)
 from fieldline.estimation.skiprope.position import (
     in_field_plane,
     midpoint_deflection,
@@ -67,6 +80,13 @@ __all__ = [
     "midpoint_position",
     "in_field_plane",
     "next_in_plane",
+    "harmonic_cone",
+    "fit_harmonics",
+    "smoothed",
+    "refined_frequency",
+    "circular_parts",
+    "cone_at",
+    "HarmonicCone",
     "axes_about",
     "despun",
 ]
