@@ -3,7 +3,6 @@
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 
 from fieldline.estimation.onboard import OnboardEstimator
 from fieldline.estimation.onboard.bias import MagnitudeBias
@@ -45,7 +44,6 @@ def flown(orbits, estimator, moment=lambda t: np.zeros(3), spoil=None, **more):
     return truth["t"], error, rate, known
 
 
-@pytest.mark.kernels
 def test_attitude_is_found_from_nothing_and_held():
     estimator = OnboardEstimator(np.diag(INERTIA))
     t, error, rate, known = flown(1.5, estimator)
@@ -57,7 +55,6 @@ def test_attitude_is_found_from_nothing_and_held():
     assert np.linalg.norm(estimator.bias_b - BIAS) < 60e-9
 
 
-@pytest.mark.kernels
 def test_commanded_dipole_is_part_of_the_motion():
     def moment(t):
         return 3e-3 * np.array([np.sin(t / 70.0), np.cos(t / 110.0), np.sin(t / 90.0)])
@@ -69,7 +66,6 @@ def test_commanded_dipole_is_part_of_the_motion():
     assert not seen.any() or np.nanmax(blind[-100:]) > 2.0 * error[-100:].max()
 
 
-@pytest.mark.kernels
 def test_what_no_longer_fits_is_given_up_and_found_again():
     turned = {"from": 3600.0}
 
@@ -86,7 +82,6 @@ def test_what_no_longer_fits_is_given_up_and_found_again():
     assert any(text.startswith("found") for text in words) and any(text.startswith("lost") for text in words)
 
 
-@pytest.mark.kernels
 def test_nothing_is_told_without_readings():
     def spoil(k, measurement):
         if k * CUBESAT["period_s"] > 3000.0:

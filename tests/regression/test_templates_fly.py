@@ -9,8 +9,11 @@ from fieldline.simulate.scenario.templates import TEMPLATES, template
 SHORT = {"time.duration_orbits": None, "time.duration_s": 120.0, "time.output_step_s": 10.0}
 
 
-@pytest.mark.kernels
-@pytest.mark.parametrize("name", sorted(TEMPLATES))
+FINE_STEPS = ("picosatellite", "detumble", "chain")  # too many for plain Python
+NAMES = [pytest.param(name, marks=() if name in FINE_STEPS else pytest.mark.kernels) for name in sorted(TEMPLATES)]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_a_template_flies(name):
     scenario = fl.Scenario.from_toml(template(name, name)).replace(**SHORT)
     flown = fl.simulate(scenario)
