@@ -97,7 +97,7 @@ def test_the_plant_agrees_with_the_boundary(offset):
 
 
 def test_integrals_of_section_2_in_the_plant():
-    """C r0 (29) to rounding, the Jacobi integral, which takes the pull for constant, to 4e-6 of F d; energy (30) swings by 5 %."""
+    """C r0 (29) to rounding, the Jacobi integral, for which the pull is constant, to 4e-6 of F d; (30) swings by 5 %."""
     still = spin(60.0, damping=0.0, duration_s=10.0).attrs["stationary_spin_rad_s"]
     run = spin(60.0, damping=0.0, spin_rad_s=1.1 * still, duration_s=10668.0, output_step_s=12.0)
     about = run["omega_b"].values[:, 2]
