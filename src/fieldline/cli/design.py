@@ -1,4 +1,4 @@
-"""`fieldline design coil`, sized from what it must do, and `fieldline design wire`, the gauge table."""
+"""`fieldline design`: coil, sized from what it must do, wire, the gauge table; conductor and vehicle in `design_vehicle`."""
 
 from __future__ import annotations
 
@@ -8,9 +8,12 @@ from typing import Annotated, Any
 import typer
 
 from fieldline.cli import options
+from fieldline.cli.design_vehicle import conductor, vehicle
 from fieldline.errors import InputError
 
-design = typer.Typer(no_args_is_help=True, help="Size coils and rods that steer by the field.")
+design = typer.Typer(no_args_is_help=True, help="Size coils, rods and conductors that steer by the field.")
+design.command()(conductor)
+design.command()(vehicle)
 
 MOST_FIELD_NT = 1e6
 ARGUMENTS = "moment_a_m2 torque_n_m diameter_m sides_m core_length_m core_diameter_m core_alloy core_shape current_a voltage_v "

@@ -91,6 +91,28 @@ def powers(axes: Any) -> None:
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
+def survey_figure(survey: Any, title: str) -> Figure:
+    """The chart of margins: inclination against argument of latitude, in powers of ten."""
+    with themed():
+        figure, axes = panels(1, 1, height_in=3.8)
+        panel = axes[0, 0]
+        shown = np.log10(np.maximum(survey["margin"].values, 1e-6))
+        mesh = panel.pcolormesh(
+            survey["argument_deg"].values,
+            survey["inclination_deg"].values,
+            shown,
+            cmap="viridis",
+            shading="nearest",
+            vmin=-6.0,
+            vmax=0.0,
+        )
+        figure.colorbar(mesh, ax=panel, pad=0.02).set_label("margin, power of ten")
+        panel.set(xlabel="argument of latitude [deg]", ylabel="inclination [deg]")
+        panel.set_title(title)
+        panel.grid(visible=False)
+        return figure
+
+
 def lqr_figure(dataset: Any) -> Figure:
     """Places, angles, currents and thrust."""
     figure, axes = panels(4, 1, height_in=7.4, row_gap=0.3)

@@ -11,7 +11,7 @@ import numpy as np
 from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LONGITUDE_DEG, SOURCE, SPIN_RAD_S, circle, direction_h
 from fieldline.cases.ames_1961.dipole_field import settings_text, times
 from fieldline.cases.erbs_like import number
-from fieldline.environment import magnetic_field
+from fieldline.environment.orbit_field import field_on_orbit_h
 from fieldline.environment.orbital_dipole import orbit_field_h
 
 INCLINATIONS_DEG = (0.0, 5.0, 11.5, 28.5, 60.0, 78.5, 90.0)
@@ -49,19 +49,8 @@ def field(
 
 def model_field_h(inclination_deg, argument_deg, node_longitude_deg, radius_m: float, model: str, date: str) -> np.ndarray:
     """(..., 3) [T] in axes h of a model of the field, at an argument of latitude and a node's longitude (they broadcast)."""
-    dcm_eh = axes_h(inclination_deg, argument_deg, node_longitude_deg)
-    field_e = magnetic_field(radius_m * dcm_eh[..., 0], np.datetime64(date), model=model)
-    return np.einsum("...ij,...i->...j", dcm_eh, field_e)
-
-
-def axes_h(inclination_deg, argument_deg, node_longitude_deg) -> np.ndarray:
-    """(..., 3, 3) whose columns are axes h (up, along the orbit, its normal) in Earth-fixed axes."""
-    u, w, i = np.broadcast_arrays(np.radians(argument_deg), np.radians(node_longitude_deg), np.radians(inclination_deg))
-    ahead = np.stack([np.cos(w), np.sin(w), 0.0 * w], axis=-1)
-    beside = np.stack([-np.cos(i) * np.sin(w), np.cos(i) * np.cos(w), np.sin(i)], axis=-1)
-    up = np.cos(u)[..., None] * ahead + np.sin(u)[..., None] * beside
-    along = np.cos(u)[..., None] * beside - np.sin(u)[..., None] * ahead
-    return np.stack([up, along, np.cross(up, along)], axis=-1)
+    angles = (np.radians(angle) for angle in (inclination_deg, argument_deg, node_longitude_deg))
+    return field_on_orbit_h(radius_m, *angles, np.datetime64(date), model)
 
 
 def _dataset(seconds: np.ndarray, dipole_h: np.ndarray, model_h: np.ndarray, settings: dict):
