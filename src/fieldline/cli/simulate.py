@@ -210,7 +210,7 @@ def summary(numbers: dict[str, Any]) -> list[str]:
         parts += [f"{what} at their limit {100.0 * share:.3g} %" for what, share in body.get("saturated_share", {}).items()]
         lines.append(f"{name}: " + " · ".join(parts))
     if numbers["events"]:
-        lines.append(f"{numbers['events']} events")
+        lines.append("1 event" if numbers["events"] == 1 else f"{numbers['events']} events")
     return lines
 
 

@@ -33,6 +33,7 @@ from fieldline.errors import InputError
 INSULATION_KG_M3 = 1400.0  # enamels of polyimide and polyester
 HOT_A_M2 = 6e6  # current density above which a winding in vacuum needs a heat path
 FINE_GAUGE = 42
+MOST_TURNS = 1e9
 ROUNDS = 60  # of the turn's length against the winding's thickness; each gains a digit or more
 
 
@@ -124,6 +125,10 @@ def _freedoms(given: Given, loop: Loop, metal: Conductor, resistivity: float, le
 
 def _whole_turns(given: Given, turns: float) -> int:
     """Up where a current or a power must not be passed, down for a mass, else to the nearest; one at least."""
+    if not turns <= MOST_TURNS:
+        raise InputError(
+            f"such a coil would have {turns:.3g} turns; the most is {MOST_TURNS:g}. Is a unit wrong? Raise the current."
+        )
     if given.current_a is not None or (given.power_w is not None and given.turns is None):
         return max(1, ceil(turns - 1e-6))
     if given.mass_kg is not None and given.turns is None:

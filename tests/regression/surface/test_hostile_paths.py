@@ -122,3 +122,28 @@ def test_ctrl_c_while_the_plant_is_compiled_is_heard_at_once(monkeypatch, compil
     assert raised == compiling
     assert isinstance(host.error, KeyboardInterrupt)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_coil_beyond_counting_is_refused(capsys):
+    coil = ["design", "coil", "--moment-a-m2", "1e300", "--diameter-m", "2.44", "--current-a", "0.1", "--wire", "AWG29"]
+    assert main(coil) == 2
+    assert "turns; the most is 1e+09. Is a unit wrong?" in capsys.readouterr().err
+
+
+@pytest.mark.kernels
+def test_one_event_is_told_as_one(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    event = '[[event]]\nkind = "user"\nfunction = "at.py:half"\n'
+    (tmp_path / "at.py").write_text("def half(t, state, parameters):\n    return [t - 30.5]\n")
+    (tmp_path / "a.toml").write_text(TUMBLE.replace("duration_s = 11400.0", "duration_s = 60.0") + event)
+    assert main(["simulate", "a.toml"]) == 0
+    assert "\n1 event\n" in capsys.readouterr().out
+
+
+def test_ten_thousand_names_are_compared_in_no_time():
+    bodies = (
+        f'[[body]]\nname = "p{k}"\nkind = "point"\nmass_kg = 1.0\noffset_o_m = [{k}.0, 0.0, 0.0]\n' for k in range(1, 10_000)
+    )
+    twice = TUMBLE + "".join(bodies).replace('"p9999"', '"p9998"')
+    with pytest.raises(InputError, match=r'body\[9999\].name must be unique; "p9998" is body\[9998\] too'):
+        Scenario.from_toml(twice)

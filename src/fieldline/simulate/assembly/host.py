@@ -138,7 +138,10 @@ class Slots:
     def add(self, function) -> int:
         """The slot that a function is put in; InputError where none is left."""
         if len(self.functions) == SLOTS:
-            raise InputError(f"a run takes {SLOTS} compiled {self._what}; give the others compiled = false, as plain Python.")
+            raise InputError(
+                f"a run takes {SLOTS} compiled {self._what}, the library's counted. Write the others in plain Python (for a law "
+                "compiled = false), or fly fewer bodies with software in one run."
+            )
         self.functions.append(function)
         return len(self.functions) - 1
 

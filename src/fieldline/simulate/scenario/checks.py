@@ -47,9 +47,10 @@ def _names(scenario) -> Found:
         "event": [one.name or one.kind for one in scenario.event],
     }
     for table, names in named.items():
+        first: dict[str, int] = {}
         for k, name in enumerate(names):
-            if name in names[:k]:
-                yield f"{table}[{k}].name", f'must be unique; "{name[:40]}" is {table}[{names.index(name)}] too'
+            if first.setdefault(name, k) != k:
+                yield f"{table}[{k}].name", f'must be unique; "{name[:40]}" is {table}[{first[name]}] too'
 
 
 def _body_named(scenario, path: str, name: str) -> Found:

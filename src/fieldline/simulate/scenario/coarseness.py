@@ -38,8 +38,11 @@ def longest_step_s(scenario) -> float:
 
 def too_coarse(scenario, body) -> str | None:
     """Why the step cannot follow a body's rotation, with the step that would do; None where it can."""
-    rate, step = fastest_rate(body), longest_step_s(scenario)
-    if scenario.integrator.method != "rk4" or rate * step <= COARSE_RAD:
+    rate = fastest_rate(body)
+    if scenario.integrator.method != "rk4" or rate * scenario.integrator.step_s <= COARSE_RAD:
+        return None  # before all bodies' sensors are looked at: there may be thousands
+    step = longest_step_s(scenario)
+    if rate * step <= COARSE_RAD:
         return None
     return f"is too coarse: {_angle(step, rate)}; a step of {fine_step(rate):.2g} s would do"
 
@@ -55,8 +58,11 @@ def orbit_too_coarse(scenario, period_s: float) -> str | None:
 
 def rather_coarse(scenario, body) -> str | None:
     """A warning where the step follows a body's rotation poorly, with the step that would do."""
-    rate, step = fastest_rate(body), longest_step_s(scenario)
-    if scenario.integrator.method != "rk4" or not FINE_RAD < rate * step <= COARSE_RAD:
+    rate = fastest_rate(body)
+    if scenario.integrator.method != "rk4" or rate * scenario.integrator.step_s <= FINE_RAD:
+        return None
+    step = longest_step_s(scenario)
+    if not FINE_RAD < rate * step <= COARSE_RAD:
         return None
     return f"step_s is coarse for the rotation: {_angle(step, rate)}; a step of {fine_step(rate):.2g} s keeps a day's error small"
 
