@@ -69,6 +69,10 @@ class Callable:
 an_object = Callable()
 
 
+def nowhere(t, measurement, memory, params):
+    return [0.0] * 7
+
+
 def mover(t, state, params):
     state[:] = 0.0
     return np.zeros(6)
@@ -150,6 +154,13 @@ def test_laws_that_numba_cannot_compile(fly, name, words):
 def test_loads_and_events_that_misbehave(fly, table, words):
     code, _, err = fly(SHORT + table, "--quiet")
     assert code == 2 and words in err
+
+
+@pytest.mark.kernels
+def test_an_estimator_that_gives_no_attitude(fly):
+    task = '[[software]]\nlaw = "user.py:nowhere"\nrole = "estimator"\nrate_hz = 1.0\ncompiled = false\n'
+    code, _, err = fly(SHORT + task, "--quiet")
+    assert code == 2 and "raised ValueError: q_bi must be a unit quaternion, scalar last; its length is 0. Mend" in err
 
 
 def test_a_file_that_ends_the_process_as_it_is_loaded(fly, tmp_path):
