@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from fieldline.cases.afit_1992 import controllability, field, lost_field, lqr, vehicle
+from fieldline.cases.afit_1992 import controllability, field, lost_field, lqr, turning_field, vehicle
 from fieldline.cases.afit_1992.field_in_orbit import INCLINATIONS_DEG
 from fieldline.report.afit_1992_figures import MICROTESLA, lost_figure, lqr_figure, powers, vehicle_figure
 from fieldline.report.series import legend, line
@@ -96,6 +96,19 @@ def stepping():
     save(figure, "stepping")
 
 
+def inclined():
+    """Multipliers of the frozen gains over a day against the inclination."""
+    figure, axes = panels(1, 1, height_in=3.0)
+    inclinations = np.append(1e-3, np.arange(3.0, 61.0, 3.0))
+    for case, colour in zip(("standoff", "r-bar", "v-bar"), AXIS_COLOURS, strict=True):
+        found = [float(turning_field(case, "frozen", i, step_s=30.0)["log_multiplier"]) for i in inclinations]
+        axes[0, 0].plot(inclinations, found, ".-", color=colour, label=case, markersize=4.0)
+    axes[0, 0].axhline(0.0, color=INK, linewidth=0.7)
+    axes[0, 0].set(xlabel="inclination [deg]", ylabel="log of the multiplier, a day", ylim=(-100.0, 150.0), xlim=(0.0, 60.0))
+    legend(axes[0, 0])
+    save(figure, "turning_field")
+
+
 if __name__ == "__main__":
     with themed():
         appendix_a()
@@ -105,3 +118,4 @@ if __name__ == "__main__":
         for case in ("standoff", "r-bar", "v-bar", "z-bar"):
             save(lqr_figure(lqr(case)), case.replace("-", "_"))
         stepping()
+        inclined()

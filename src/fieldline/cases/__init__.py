@@ -22,6 +22,7 @@ CASES = {
     "afit_1992_model": ("afit_1992", "linear_model"),
     "afit_1992_controllability": ("afit_1992", "controllability"),
     "afit_1992_lqr": ("afit_1992", "lqr"),
+    "afit_1992_turning_field": ("afit_1992", "turning_field"),
     "afit_1992_field": ("afit_1992", "field"),
     "afit_1992_lost_field": ("afit_1992", "lost_field"),
     "afit_1992_transfer": ("afit_1992", "transfer"),

@@ -148,6 +148,24 @@ def lqr_figure(dataset: Any) -> Figure:
     return figure
 
 
+def turning_figure(dataset: Any) -> Figure:
+    """Growth of the instant's loop and the size of its gain over the time."""
+    figure, axes = panels(2, 1, height_in=4.2, row_gap=0.3)
+    hours = dataset["seconds"].values / HOUR_S
+    line(axes[0, 0], hours, 1e3 * dataset["growth"].values, AXIS_COLOURS[0], width=1.2)
+    axes[0, 0].axhline(0.0, color=INK, linewidth=0.6)
+    axes[0, 0].set_ylabel("growth [1/ks]")
+    share, verdict = 100.0 * float(dataset["unstable_share"]), float(dataset["log_multiplier"])
+    axes[0, 0].set_title(f"{dataset.attrs['title']}, log of the multiplier {verdict:.1f}; growing {share:.0f} % of the time")
+    line(axes[1, 0], hours, dataset["gain_norm"].values, AXIS_COLOURS[2], width=1.2)
+    powers(axes[1, 0])
+    axes[1, 0].set_ylabel("norm of the gain")
+    for panel in axes[:, 0]:
+        panel.set_xlim(hours[0], hours[-1])
+    label_outer(axes, ("time [h]",))
+    return figure
+
+
 def field_figure(dataset: Any) -> Figure:
     """Up, along and across: the dipole and the model on each other."""
     figure, axes = panels(3, 1, height_in=5.4, row_gap=0.3)
@@ -196,6 +214,7 @@ OWN_FIGURES = {
     "afit_1992_model": model_figure,
     "afit_1992_controllability": controllability_figure,
     "afit_1992_lqr": lqr_figure,
+    "afit_1992_turning_field": turning_figure,
     "afit_1992_field": field_figure,
     "afit_1992_lost_field": lost_figure,
     "afit_1992_transfer": transfer_figure,

@@ -4,6 +4,7 @@ vehicle           mass, inertia, poles and conductors of the tank with towers (a
 linear_model      F, G, H of the frozen instant (chapter 4)
 controllability   at instants of the orbit, with and without thruster, and which conductors may fail
 lqr               standoff, R-BAR, V-BAR and Z-BAR (appendix E)
+turning_field     the regulators on the field that turns: Floquet multipliers
 field             the dipole and IGRF-14 in the target's axes (appendix A)
 lost_field        where its parts vanish: the question of sections 4.1.3 and 6
 transfer          the climb that sizes the vertical conductors (chapter 5)
@@ -19,5 +20,6 @@ from fieldline.cases.afit_1992.frozen_model import linear_model
 from fieldline.cases.afit_1992.reach import controllability
 from fieldline.cases.afit_1992.tank import vehicle
 from fieldline.cases.afit_1992.transfer_orbit import transfer
+from fieldline.cases.afit_1992.turning_field import turning_field
 
-__all__ = ["vehicle", "linear_model", "controllability", "lqr", "field", "lost_field", "transfer"]
+__all__ = ["vehicle", "linear_model", "controllability", "lqr", "turning_field", "field", "lost_field", "transfer"]

@@ -105,7 +105,7 @@ def lqr(
     refuse_uncontrollable(made, orbit, field_angle_deg, inclination_deg, node_deg)
     plant, field_h = frozen_plant(made, orbit, field_angle_deg, inclination_deg, node_deg)
     weight = number("state_weight", own.state_weight if state_weight is None else state_weight, 1e-12)
-    found = _regulator(plant, orbit, weight, number("control_weight", control_weight, 1e-12))
+    found = regulator_of(plant, orbit, weight, number("control_weight", control_weight, 1e-12))
     seconds, references = _command(start, target, steps, step_every_s, duration_s, points)
     state = np.zeros(12)
     state[:6:2] = start
@@ -116,7 +116,7 @@ def lqr(
     return _dataset(made, plant, orbit, found, response, references, settings | held | {"field_h": field_h})
 
 
-def _regulator(plant: Plant, orbit: Circle, state_weight: float, control_weight: float) -> Regulator:
+def regulator_of(plant: Plant, orbit: Circle, state_weight: float, control_weight: float = 1.0) -> Regulator:
     """Gain and prefilter with the thesis's weights."""
     states = state_weight * np.repeat([1.0, orbit.radius_m], 6)
     n = orbit.mean_motion_rad_s

@@ -1,0 +1,134 @@
+"""The thesis's regulators on the field that turns: is the loop stable over an orbit, over a day?
+
+    dx/dt = (F - G(t) K(t)) x,   x(t + T) = X(T) x(t),   stable if every eigenvalue of X(T) is inside the unit circle
+
+Three gains: "frozen", K of one instant (33 degrees over the equator) kept for good, as in appendix E; "scheduled", the
+regulator of each instant; "periodic", the regulator of the periodic system (an equatorial orbit, where the field's angle
+closes in 2 pi/(n - we)). The field is the thesis's dipole, the commands zero, the state known.
+
+Over the equator all are stable. At the design's own 28.5 degrees the frozen gain of the standoff is not: in a day its
+state grows by e^79; the limit is between 14 and 17 degrees.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fieldline.analysis.controllability import orbital_scale
+from fieldline.analysis.periodic_riccati import periodic_regulator
+from fieldline.cases.afit_1992.approaches import APPROACHES, regulator_of
+from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LONGITUDE_DEG, SOURCE, SPIN_RAD_S, Circle, circle
+from fieldline.cases.afit_1992.frozen_model import built, frozen_plant
+from fieldline.cases.ames_1961.dipole_field import settings_text
+from fieldline.cases.erbs_like import number
+from fieldline.control.electrodynamic import Plant
+from fieldline.control.periodic_system import exponentials
+from fieldline.errors import InputError, nearest, shown
+
+CONTROLLERS = ("frozen", "scheduled", "periodic")
+MOST_STEPS = 20_000
+
+
+def turning_field(
+    case: str = "standoff",
+    controller: str = "frozen",
+    inclination_deg: float = 0.0,
+    *,
+    field_angle_deg: float = 33.0,
+    duration_s: float | None = None,
+    step_s: float = 20.0,
+    altitude_m: float = ALTITUDE_M,
+):
+    """The transition of a closed loop over a turn of the field, or over a sidereal day, as a Dataset over `seconds`.
+
+    Parameters
+    ----------
+    case : of appendix E; gives vehicle and weights.      controller : "frozen", "scheduled" or "periodic".
+    inclination_deg : of the orbit; argument, node and Greenwich's angle are zero at the start.
+    field_angle_deg : at which the frozen gain was made.      step_s : about; the duration is cut into equal steps.
+    duration_s : a turn of the field's angle over the equator, a sidereal day elsewhere.
+
+    Returns
+    -------
+    Dataset: growth, the greatest real part of the frozen loop's poles [1/s] at each step; log_multiplier, the logarithm of the
+    largest multiplier over the duration (negative: stable); unstable_share, of the time with growth; gain_norm.
+    """
+    settings = dict(locals())
+    for name, value, known in (("case", case, APPROACHES), ("controller", controller, CONTROLLERS)):
+        if value not in known:
+            raise InputError(f'{name} "{shown(str(value))}" is unknown; {nearest(str(value), known)}')
+    orbit = circle(altitude_m)
+    turn = 2.0 * np.pi / (orbit.mean_motion_rad_s - SPIN_RAD_S)
+    level = number("inclination_deg", inclination_deg, 0.0, 180.0) == 0.0
+    if controller == "periodic" and not (level and duration_s is None):
+        raise InputError(
+            'controller = "periodic" needs an equatorial orbit and its own turn; give neither inclination nor duration.'
+        )
+    length = number("duration_s", (turn if level else 2.0 * np.pi / SPIN_RAD_S) if duration_s is None else duration_s, 1.0, 1e7)
+    count = int(np.ceil(length / number("step_s", step_s, 0.1, 600.0)))
+    if count > MOST_STEPS:
+        raise InputError(f"{length:g} s in steps of {step_s:g} are {count:,}; at most {MOST_STEPS:,}. Take a longer step.")
+    halves = np.linspace(0.0, length, 2 * count + 1)
+    plant, gains = _loop(case, controller, orbit, halves, inclination_deg, field_angle_deg)
+    return _dataset(plant, gains, orbit, halves, settings)
+
+
+def _loop(case, controller, orbit: Circle, halves, inclination_deg, field_angle_deg) -> tuple[Plant, np.ndarray]:
+    """The plant at nodes and midpoints, (2 N + 1, 12, m), and gains there, or one."""
+    own = APPROACHES[case]
+    made = built({"vertical_m": own.towers_m[0], "horizontal_m": own.towers_m[1], "arms": "centre"})
+    node = -np.degrees(SPIN_RAD_S * halves) - POLE_LONGITUDE_DEG
+    angle = np.degrees(orbit.mean_motion_rad_s * halves) + node
+    plant, _ = frozen_plant(made, orbit, angle, inclination_deg, node)
+    if controller == "frozen":
+        here, _ = frozen_plant(made, orbit, field_angle_deg)
+        return plant, regulator_of(here, orbit, own.state_weight).gain
+    if controller == "scheduled":
+        return plant, np.array([regulator_of(plant._replace(G=g), orbit, own.state_weight).gain for g in plant.G])
+    weights = np.diag(own.state_weight * np.repeat([1.0, orbit.radius_m], 6))
+    gains = periodic_regulator(plant.F, plant.G[:-1], weights, np.eye(plant.G.shape[-1]), halves[-1], control="continuous")
+    return plant, np.concatenate([gains["gain"].values, gains["gain"].values[:1]])
+
+
+def log_multiplier(closed: np.ndarray, step_s: float) -> float:
+    """Logarithm of the largest eigenvalue's size of the transition of closed (2 N + 1, n, n), nodes and midpoints [1/s]."""
+    start, middle, end = closed[:-1:2], closed[1::2], closed[2::2]
+    bend = start @ end - end @ start
+    steps = exponentials(step_s / 6.0 * (start + 4.0 * middle + end) - step_s**2 / 12.0 * bend)  # Magnus, fourth order
+    whole, size = np.eye(closed.shape[-1]), 0.0
+    for step in steps:
+        whole = step @ whole
+        norm = float(np.abs(whole).max())
+        whole, size = whole / norm, size + float(np.log(norm))
+    return size + float(np.log(np.abs(np.linalg.eigvals(whole)).max()))
+
+
+def _dataset(plant: Plant, gains: np.ndarray, orbit: Circle, halves: np.ndarray, settings: dict):
+    """The verdict and how it comes about."""
+    import xarray as xr
+
+    scale = orbital_scale(orbit.mean_motion_rad_s)  # numbers of one size: the multipliers stay
+    closed = (plant.F - plant.G @ gains) * scale / scale[:, None]
+    growth = np.linalg.eigvals(closed[:-1:2]).real.max(axis=1)
+    norms = np.broadcast_to(np.linalg.norm(gains, axis=(-2, -1)), halves.shape)[:-1:2]
+    verdict = log_multiplier(closed, halves[2])
+    scalars = {
+        "log_multiplier": (verdict, "logarithm of the largest multiplier over the duration; negative: stable"),
+        "unstable_share": (float((growth > 0.0).mean()), "share of the time in which the loop of the instant is unstable"),
+    }
+    return xr.Dataset(
+        {
+            "growth": ("seconds", growth, {"units": "s-1", "long_name": "greatest real part of the instant's poles"}),
+            "gain_norm": ("seconds", norms, {"units": "1", "long_name": "Frobenius norm of the gain, SI"}),
+            **{name: ((), value, {"units": "1", "long_name": words}) for name, (value, words) in scalars.items()},
+        },
+        coords={"seconds": ("seconds", halves[:-1:2], {"units": "s"})},
+        attrs={
+            "title": f"{settings['case']}, {settings['controller']} gain, {settings['inclination_deg']:g} deg: "
+            + ("stable" if verdict < 0.0 else "unstable"),
+            "case": "afit_1992_turning_field",
+            "source": f"{SOURCE}, section 4.2 and chapter 6",
+            "settings_json": settings_text(settings),
+            "duration_s": float(halves[-1]),
+        },
+    )

@@ -1,0 +1,82 @@
+"""Lawrence (1992), AFIT/GA/ENY/92D-05: its regulators on the dipole's field as it turns.
+
+The thesis has no such numbers; these are of an independent re-derivation, which also flew the non-linear motion.
+"""
+
+import numpy as np
+import pytest
+
+from fieldline.cases.afit_1992 import turning_field
+from fieldline.errors import InputError
+
+EQUATOR = {
+    ("frozen", "standoff"): 0.30391,
+    ("frozen", "r-bar"): 8.7807e-3,
+    ("frozen", "v-bar"): 2.4521e-3,
+    ("scheduled", "standoff"): 0.21165,
+    ("scheduled", "r-bar"): 8.7809e-3,
+    ("scheduled", "v-bar"): 2.2934e-3,
+    ("periodic", "standoff"): 0.21165,
+    ("periodic", "r-bar"): 8.7809e-3,
+    ("periodic", "v-bar"): 2.1524e-3,
+}
+
+
+@pytest.mark.parametrize(("controller", "case"), EQUATOR)
+def test_over_the_equator(controller, case):
+    found = turning_field(case, controller, step_s=60.0 if controller == "scheduled" else 20.0)
+    assert found.attrs["duration_s"] == pytest.approx(5934.8, abs=0.05)
+    assert np.exp(float(found["log_multiplier"])) == pytest.approx(EQUATOR[controller, case], rel=5e-5)
+
+
+def test_stable_although_it_grows_for_161_of_360_degrees():
+    found = turning_field("standoff", step_s=5.0)
+    assert 360.0 * float(found["unstable_share"]) == pytest.approx(161.0, abs=1.0)
+    assert float(found["growth"].max()) == pytest.approx(2.72e-4, abs=1e-6)
+    assert float(found["log_multiplier"]) < 0.0
+
+
+@pytest.mark.parametrize(
+    ("case", "inclination", "log"),
+    [
+        ("standoff", 11.5, -12.2),
+        ("standoff", 14.0, -6.2),
+        ("standoff", 17.0, 1.8),
+        ("standoff", 28.5, 79.0),  # the orbit that the thesis designs for
+        ("standoff", 60.0, 678.0),
+        ("r-bar", 28.5, -59.0),
+        ("r-bar", 60.0, 59.0),
+        ("r-bar", 78.5, 453.0),
+        ("v-bar", 28.5, -76.0),
+        ("v-bar", 51.6, 125.0),
+    ],
+)
+def test_over_a_day(case, inclination, log):
+    found = turning_field(case, "frozen", inclination)
+    assert found.attrs["duration_s"] == pytest.approx(86164.0)
+    assert float(found["log_multiplier"]) == pytest.approx(log, abs=0.55)
+
+
+def test_the_frozen_loop_grows_for_three_quarters_of_the_day():
+    assert float(turning_field("standoff", "frozen", 28.5, step_s=60.0)["unstable_share"]) == pytest.approx(0.75, abs=0.015)
+
+
+def test_gains_made_anew_are_stable_at_the_designs_own_inclination():
+    found = turning_field("standoff", "scheduled", 28.5, step_s=240.0)
+    assert float(found["log_multiplier"]) == pytest.approx(-20.3, abs=0.1)
+    assert float(found["gain_norm"].max() / found["gain_norm"].min()) > 2.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"case": "rbar"}, 'did you mean "r-bar"'),
+        ({"controller": "froze"}, 'did you mean "frozen"'),
+        ({"controller": "periodic", "inclination_deg": 28.5}, "needs an equatorial orbit"),
+        ({"inclination_deg": -1.0}, "inclination_deg must be a number"),
+        ({"inclination_deg": 10.0, "step_s": 1.0}, "Take a longer step"),
+    ],
+)
+def test_bad_input(arguments, words):
+    with pytest.raises(InputError, match=words):
+        turning_field(**arguments)
