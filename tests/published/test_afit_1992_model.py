@@ -9,7 +9,7 @@ import pytest
 
 from fieldline.analysis import controllability_now
 from fieldline.analysis.controllability import orbital_scale
-from fieldline.cases.afit_1992 import controllability, linear_model, vehicle
+from fieldline.cases.afit_1992 import controllability, failures, linear_model, vehicle
 from fieldline.cases.afit_1992.earth import circle
 from fieldline.errors import InputError
 from fieldline.mechanics.relative_motion import attitude_poles, motion_matrix
@@ -17,6 +17,7 @@ from fieldline.mechanics.relative_motion import attitude_poles, motion_matrix
 R_VEHICLE, V_VEHICLE = (50.0, 310.0), (310.0, 50.0)
 ORBIT = circle()
 N = ORBIT.mean_motion_rad_s
+X, Y, CROSSES = "I1u+I1d+I1n+I1s", "I2e+I2w+I2n+I2s", "I1u+I1d+I2e+I2w"
 SCALES = {"rate": N, "scale": orbital_scale(N)}
 
 
@@ -149,6 +150,25 @@ def test_any_three_conductors_may_fail(towers):
     assert sorted(margin.values())[2] > 1e-3
 
 
+@pytest.mark.parametrize(("thruster", "fatal"), [(True, {X, CROSSES}), (False, {X, Y, CROSSES})])
+def test_the_same_sets_are_fatal_at_every_inclination(thruster, fatal):
+    found = failures((0.0, 51.6), 4, thruster=thruster)
+    assert found.sizes["subset"] == 8 + 28 + 56 + 70
+    for inclination in found["inclination_deg"].values:
+        here = found.sel(inclination_deg=inclination)
+        assert {str(name) for name in here["subset"].values[here["fatal"].values > 0.0]} == fatal
+        smaller = here["least_margin"].values[found["lost_count"].values < 4]
+        assert smaller.min() > 1e-3 and (here["good_share"].values[found["lost_count"].values < 4] == 1.0).all()
+
+
+def test_smallest_fatal_sets_hide_the_larger():
+    found = failures((0.0,), 3, design=1, thruster=False, angle_step_deg=120.0, node_step_deg=360.0)
+    fatal = found["fatal"].values[0] > 0.0
+    names = [set(str(name).split("+")) for name in found["subset"].values[fatal]]
+    assert names and not any(one < other for one in names for other in names)
+    assert (found["least_margin"].values[0][fatal] < 1e-6).all()
+
+
 def test_where_no_instant_is_enough():
     # At 11.5 deg the dipole is along the normal once a day; beyond 78.5 deg it is across the normal twice.
     without = linear_model(2, False, inclination_deg=11.5, node_deg=-90.0)
@@ -198,6 +218,19 @@ def test_the_order_of_moments_is_enough_but_not_needed():
 def test_bad_input(arguments, words):
     with pytest.raises(InputError, match=words):
         linear_model(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"most_lost": 8}, "most_lost must be a number, 1 to 7"),
+        ({"inclinations_deg": (270.0,)}, "inclinations_deg must be numbers from 0 to 180"),
+        ({"angle_step_deg": 1.0, "node_step_deg": 1.0}, "129,600 instants are too many"),
+    ],
+)
+def test_bad_failures(arguments, words):
+    with pytest.raises(InputError, match=words):
+        failures(**arguments)
 
 
 def test_the_number_of_lost_conductors():

@@ -21,6 +21,7 @@ CASES = {
     "afit_1992_vehicle": ("afit_1992", "vehicle"),
     "afit_1992_model": ("afit_1992", "linear_model"),
     "afit_1992_controllability": ("afit_1992", "controllability"),
+    "afit_1992_failures": ("afit_1992", "failures"),
     "afit_1992_lqr": ("afit_1992", "lqr"),
     "afit_1992_turning_field": ("afit_1992", "turning_field"),
     "afit_1992_field": ("afit_1992", "field"),

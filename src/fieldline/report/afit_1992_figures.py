@@ -148,6 +148,26 @@ def lqr_figure(dataset: Any) -> Figure:
     return figure
 
 
+def failures_figure(dataset: Any) -> Figure:
+    """Least margins of all sets, by how many conductors are lost, a panel for each inclination."""
+    inclinations = dataset["inclination_deg"].values
+    figure, axes = panels(1, len(inclinations), height_in=3.0, column_gap=0.1)
+    lost = dataset["lost_count"].values
+    for panel, inclination in zip(axes[0], inclinations, strict=True):
+        margin = np.maximum(dataset["least_margin"].sel(inclination_deg=inclination).values, DARK)
+        spread = np.concatenate([np.linspace(-0.3, 0.3, count) for count in np.unique(lost, return_counts=True)[1]])
+        panel.plot(lost + spread, margin, ".", color=AXIS_COLOURS[0], markersize=4.0)
+        panel.axhline(1e-6, color=WARM, linewidth=0.8)
+        panel.set_ylim(1e-18, 1.0)
+        powers(panel)
+        panel.tick_params(labelleft=panel is axes[0, 0])
+        panel.set_xticks(np.unique(lost))
+        panel.set_xlabel("conductors lost")
+        panel.set_title(f"{inclination:g} deg")
+    axes[0, 0].set_ylabel("least margin")
+    return figure
+
+
 def turning_figure(dataset: Any) -> Figure:
     """Growth of the instant's loop and the size of its gain over the time."""
     figure, axes = panels(2, 1, height_in=4.2, row_gap=0.3)
@@ -213,6 +233,7 @@ OWN_FIGURES = {
     "afit_1992_vehicle": vehicle_figure,
     "afit_1992_model": model_figure,
     "afit_1992_controllability": controllability_figure,
+    "afit_1992_failures": failures_figure,
     "afit_1992_lqr": lqr_figure,
     "afit_1992_turning_field": turning_figure,
     "afit_1992_field": field_figure,

@@ -3,6 +3,7 @@
 vehicle           mass, inertia, poles and conductors of the tank with towers (appendix D)
 linear_model      F, G, H of the frozen instant (chapter 4)
 controllability   at instants of the orbit, with and without thruster, and which conductors may fail
+failures          which conductors may fail, at which inclinations
 lqr               standoff, R-BAR, V-BAR and Z-BAR (appendix E)
 turning_field     the regulators on the field that turns: Floquet multipliers
 field             the dipole and IGRF-14 in the target's axes (appendix A)
@@ -14,6 +15,7 @@ argument of latitude, Greenwich's angle, longitude of the austral pole (-78.5, 1
 """
 
 from fieldline.cases.afit_1992.approaches import lqr
+from fieldline.cases.afit_1992.failures import failures
 from fieldline.cases.afit_1992.field_in_orbit import field
 from fieldline.cases.afit_1992.field_lost import lost_field
 from fieldline.cases.afit_1992.frozen_model import linear_model
@@ -22,4 +24,4 @@ from fieldline.cases.afit_1992.tank import vehicle
 from fieldline.cases.afit_1992.transfer_orbit import transfer
 from fieldline.cases.afit_1992.turning_field import turning_field
 
-__all__ = ["vehicle", "linear_model", "controllability", "lqr", "turning_field", "field", "lost_field", "transfer"]
+__all__ = ["vehicle", "linear_model", "controllability", "failures", "lqr", "turning_field", "field", "lost_field", "transfer"]
