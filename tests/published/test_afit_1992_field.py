@@ -79,6 +79,8 @@ def test_does_the_field_vanish_at_11_and_78_degrees():
         (lambda: field(-1.0), "inclination_deg must be a number, 0 to 180"),
         (lambda: field(28.5, step_s=1e-3), "samples"),
         (lambda: field(28.5, model="IGRF14x"), "IGRF"),
+        (lambda: field(28.5, date="soon"), "date must be a day"),
+        (lambda: lost_field("x"), "inclinations_deg must be numbers from 0 to 180"),
         (lambda: lost_field((200.0,)), "inclinations_deg must be numbers from 0 to 180"),
         (lambda: field(28.5, altitude_m=400.0), "altitude_m must be a number, 100000"),
     ],

@@ -205,6 +205,13 @@ def test_ratios_of_the_arms():
         ({"control_weight": -1.0}, "control_weight must be a number"),
         ({"start_m": (1.0, 2.0)}, "start_m must be three places"),
         ({"points": 1}, "points must be a number, 3"),
+        ({"case": ["r-bar"]}, "there is no case"),
+        ({"steps": 2.5}, "steps must be a whole number"),
+        ({"field_angle_deg": "x"}, "field_angle_deg must be a number"),
+        ({"field_angle_deg": float("nan")}, "field_angle_deg must be a number"),
+        ({"start_m": "here"}, "start_m must be three places"),
+        ({"thruster": "no"}, "thruster must be true or false"),
+        ({"duration_s": float("inf")}, "duration_s must be a number"),
         ({"inclination_deg": 11.5, "node_deg": -90.0, "thruster": False}, "motion in z, z_rate cannot be reached"),
         (
             {"inclination_deg": 78.5, "node_deg": 90.0},

@@ -128,6 +128,8 @@ def _check(given: dict) -> None:
         raise InputError(
             f'arms must be "hull" (conductors begin there) or "centre" (as the thesis has it); got {given["arms"]!r}.'
         )
+    if not isinstance(given["thruster"], bool):
+        raise InputError(f"thruster must be true or false; got {given['thruster']!r}.")
     for name, value in given.items():
         if name in ("design", "thruster", "arms"):
             continue

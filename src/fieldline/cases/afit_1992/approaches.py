@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.analysis.controllability import orbital_scale
-from fieldline.cases.afit_1992.earth import ALTITUDE_M, FIELD_ANGLE_DEG, SOURCE, Circle, circle
+from fieldline.cases.afit_1992.earth import ALTITUDE_M, FIELD_ANGLE_DEG, SOURCE, Circle, circle, whole
 from fieldline.cases.afit_1992.frozen_model import built, frozen_plant
 from fieldline.cases.afit_1992.reach import refuse_uncontrollable
 from fieldline.cases.ames_1961.dipole_field import settings_text
@@ -95,13 +95,15 @@ def lqr(
     InputError : an unknown case, weights that are not positive, a plant out of reach, a target out of reach (within_limit).
     """
     settings = dict(locals())
-    if case not in APPROACHES:
+    if not isinstance(case, str) or case not in APPROACHES:
         raise InputError(f'there is no case "{shown(str(case))}"; {nearest(str(case), APPROACHES)}')
     own = APPROACHES[case]
     towers = own.towers_m[0] if vertical_m is None else vertical_m, own.towers_m[1] if horizontal_m is None else horizontal_m
     start, target = _place("start_m", start_m, own.start_m), _place("target_m", target_m, own.target_m)
     orbit = circle(altitude_m)
     made = built({**settings, "vertical_m": towers[0], "horizontal_m": towers[1]})
+    for name, angle in (("field_angle_deg", field_angle_deg), ("node_deg", node_deg), ("inclination_deg", inclination_deg)):
+        number(name, angle, -1e6, 1e6)
     refuse_uncontrollable(made, orbit, field_angle_deg, inclination_deg, node_deg)
     plant, field_h = frozen_plant(made, orbit, field_angle_deg, inclination_deg, node_deg)
     weight = number("state_weight", own.state_weight if state_weight is None else state_weight, 1e-12)
@@ -125,7 +127,10 @@ def regulator_of(plant: Plant, orbit: Circle, state_weight: float, control_weigh
 
 def _place(name: str, given, own) -> np.ndarray:
     """(3,) [m], the case's own where none is given."""
-    place = np.asarray(own if given is None else given, dtype=float)
+    try:
+        place = np.asarray(own if given is None else given, dtype=float)
+    except (TypeError, ValueError):
+        place = np.empty(0)
     if place.shape != (3,) or not np.isfinite(place).all() or np.abs(place).max() > 1e6:
         raise InputError(f"{name} must be three places x, y, z in metres, under 1000 km; got {given!r}.")
     return place
@@ -133,7 +138,7 @@ def _place(name: str, given, own) -> np.ndarray:
 
 def _command(start, target, steps, step_every_s, duration_s, points) -> tuple[np.ndarray, np.ndarray]:
     """seconds (k,) and references (k, 6): the target, or equal steps towards it."""
-    steps, points = int(number("steps", steps, 1, 10_000)), int(number("points", points, 3, MOST_POINTS))
+    steps, points = whole("steps", steps, 1, 10_000), whole("points", points, 3, MOST_POINTS)
     seconds = np.linspace(0.0, number("duration_s", duration_s, 1.0, 1e9), points)
     done = np.minimum(1.0, (1.0 + np.floor(seconds / number("step_every_s", step_every_s, 1e-3) + 1e-9)) / steps)
     references = np.zeros((points, 6))

@@ -8,6 +8,7 @@ import numpy as np
 
 from fieldline.cases.erbs_like import number
 from fieldline.environment.orbital_dipole import dipole_direction_h, orbit_field_h
+from fieldline.errors import InputError, shown
 
 SOURCE = "Lawrence (1992), AFIT/GA/ENY/92D-05"
 GM_M3_S2 = 6.67259e-11 * 5.976e24
@@ -26,6 +27,36 @@ class Circle(NamedTuple):
     radius_m: float
     mean_motion_rad_s: float
     strength_tesla: float  # m / r^3
+
+
+def inclinations_of(inclinations_deg) -> np.ndarray:
+    """(k,) [deg] from 0 to 180, or a refusal."""
+    try:
+        inclinations = np.atleast_1d(np.asarray(inclinations_deg, dtype=float))
+    except (TypeError, ValueError):
+        inclinations = np.empty((0, 0))
+    if inclinations.ndim != 1 or not len(inclinations) or not ((inclinations >= 0.0) & (inclinations <= 180.0)).all():
+        raise InputError(f"inclinations_deg must be numbers from 0 to 180; got {inclinations_deg!r}.")
+    return inclinations
+
+
+def day_of(date: str) -> np.datetime64:
+    """The day that a text names, or a refusal."""
+    try:
+        day = np.datetime64(date if isinstance(date, str) else "NaT", "s")
+    except (TypeError, ValueError):
+        day = np.datetime64("NaT")
+    if np.isnat(day):
+        raise InputError(f"date must be a day such as 1992-12-01; got {shown(str(date))!r}.")
+    return day
+
+
+def whole(name: str, value, least: int, most: int) -> int:
+    """A whole number within bounds, or a refusal."""
+    found = number(name, value, least, most)
+    if found != int(found):
+        raise InputError(f"{name} must be a whole number, {least} to {most}; got {value!r}.")
+    return int(found)
 
 
 def circle(altitude_m: float = ALTITUDE_M) -> Circle:

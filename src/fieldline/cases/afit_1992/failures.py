@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 
 from fieldline.analysis.controllability import THRESHOLD, controllability_now, orbital_scale
-from fieldline.cases.afit_1992.earth import ALTITUDE_M, SOURCE, circle
+from fieldline.cases.afit_1992.earth import ALTITUDE_M, SOURCE, circle, inclinations_of, whole
 from fieldline.cases.afit_1992.frozen_model import built, frozen_plant
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.erbs_like import number
@@ -50,12 +50,10 @@ def failures(
     it already is, so that the fatal sets listed are the smallest.
     """
     settings = dict(locals())
-    inclinations = np.atleast_1d(np.asarray(inclinations_deg, dtype=float))
-    if inclinations.ndim != 1 or not ((inclinations >= 0.0) & (inclinations <= 180.0)).all():
-        raise InputError(f"inclinations_deg must be numbers from 0 to 180; got {inclinations_deg!r}.")
+    inclinations = inclinations_of(inclinations_deg)
     orbit, made = circle(altitude_m), built(settings)
     count = len(made.conductors)
-    most = int(number("most_lost", most_lost, 1, count - 1))
+    most = whole("most_lost", most_lost, 1, count - 1)
     angle = np.arange(0.0, 360.0, number("angle_step_deg", angle_step_deg, 1.0, 360.0))
     node = np.arange(0.0, 360.0, number("node_step_deg", node_step_deg, 1.0, 360.0))
     if len(angle) * len(node) > MOST_INSTANTS:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LONGITUDE_DEG, SOURCE, SPIN_RAD_S, circle, direction_h
+from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LONGITUDE_DEG, SOURCE, SPIN_RAD_S, circle, day_of, direction_h
 from fieldline.cases.ames_1961.dipole_field import settings_text, times
 from fieldline.cases.erbs_like import number
 from fieldline.environment.orbit_field import field_on_orbit_h
@@ -50,7 +50,7 @@ def field(
 def model_field_h(inclination_deg, argument_deg, node_longitude_deg, radius_m: float, model: str, date: str) -> np.ndarray:
     """(..., 3) [T] in axes h of a model of the field, at an argument of latitude and a node's longitude (they broadcast)."""
     angles = (np.radians(angle) for angle in (inclination_deg, argument_deg, node_longitude_deg))
-    return field_on_orbit_h(radius_m, *angles, np.datetime64(date), model)
+    return field_on_orbit_h(radius_m, *angles, day_of(date), model)
 
 
 def _dataset(seconds: np.ndarray, dipole_h: np.ndarray, model_h: np.ndarray, settings: dict):

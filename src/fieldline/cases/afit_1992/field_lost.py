@@ -11,11 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LATITUDE_DEG, SOURCE, circle
+from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LATITUDE_DEG, SOURCE, circle, inclinations_of
 from fieldline.cases.afit_1992.field_in_orbit import DATE, INCLINATIONS_DEG, model_field_h
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.erbs_like import number
-from fieldline.errors import InputError
 
 ZOOMS = 6  # of a fifth each, from the grid's step
 ZOOM_POINTS = 11
@@ -36,9 +35,7 @@ def lost_field(
     the RMS in the plane, across_share the same across; and where: argument_deg, node_longitude_deg of the first;
     in_plane_least_dipole, across_least_dipole of the thesis's dipole, in closed form.
     """
-    inclinations = np.atleast_1d(np.asarray(inclinations_deg, dtype=float))
-    if inclinations.ndim != 1 or not ((inclinations >= 0.0) & (inclinations <= 180.0)).all():
-        raise InputError(f"inclinations_deg must be numbers from 0 to 180; got {inclinations_deg!r}.")
+    inclinations = inclinations_of(inclinations_deg)
     radius = circle(altitude_m).radius_m
     ring = np.arange(0.0, 360.0, number("step_deg", step_deg, 0.5, 15.0))
     argument, node = (one.ravel() for one in np.meshgrid(ring, ring, indexing="ij"))

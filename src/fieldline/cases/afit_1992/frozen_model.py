@@ -44,6 +44,8 @@ def linear_model(
     Dataset: F, G, H, field_h [T], pole [1/s]; margin (of `analysis.controllability_now`), steady_margin.
     """
     settings = dict(locals())
+    for name, angle in (("field_angle_deg", field_angle_deg), ("node_deg", node_deg)):
+        number(name, angle, -1e6, 1e6)
     orbit, made = circle(altitude_m), built(settings)
     plant, field_h = frozen_plant(made, orbit, field_angle_deg, inclination_deg, node_deg)
     if printed:

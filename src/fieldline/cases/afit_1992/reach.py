@@ -51,6 +51,7 @@ def controllability(
     orbit_margin; with `lost`: subset_margin over subset, the least over the orbit.
     """
     settings = dict(locals())
+    number("node_deg", node_deg, -1e6, 1e6)
     orbit, made = circle(altitude_m), built(settings)
     angles = np.arange(0.0, 360.0, number("step_deg", step_deg, 0.1, 90.0))
     plant, _ = frozen_plant(made, orbit, angles, inclination_deg, node_deg)

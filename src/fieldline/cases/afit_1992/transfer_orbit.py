@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldline.cases.afit_1992.earth import EARTH_RADIUS_M, GM_M3_S2, SOURCE
 from fieldline.cases.ames_1961.dipole_field import settings_text
+from fieldline.cases.erbs_like import number
 from fieldline.constants import SECONDS_PER_DAY
 from fieldline.design.conductor import ConductorDesign, design_conductor, farthest_hold, holding_length, spiral_radius
 
@@ -43,6 +44,7 @@ def transfer(
     wire_field_tesla; hold_length_m (above_m) of the horizontal conductors of the R-BAR formula, farthest_hold_m.
     """
     settings = dict(locals())
+    number("days", days, 1e-3, 1e6)
     found = design_conductor(
         mass_kg=mass_kg,
         low_altitude_m=low_altitude_m,

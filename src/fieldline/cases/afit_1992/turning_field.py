@@ -55,8 +55,9 @@ def turning_field(
     """
     settings = dict(locals())
     for name, value, known in (("case", case, APPROACHES), ("controller", controller, CONTROLLERS)):
-        if value not in known:
+        if not isinstance(value, str) or value not in known:
             raise InputError(f'{name} "{shown(str(value))}" is unknown; {nearest(str(value), known)}')
+    number("field_angle_deg", field_angle_deg, -1e6, 1e6)
     orbit = circle(altitude_m)
     turn = 2.0 * np.pi / (orbit.mean_motion_rad_s - SPIN_RAD_S)
     level = number("inclination_deg", inclination_deg, 0.0, 180.0) == 0.0
