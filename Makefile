@@ -11,7 +11,8 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install
-PYTEST := $(BIN)/python -m pytest
+# a file's tests stay in one process: they share what they have flown
+PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile
 # code compiled with bounds checking must not meet the other in one cache
 BOUNDS_CACHE := $(CURDIR)/$(VENV)/numba-bounds
 

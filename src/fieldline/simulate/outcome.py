@@ -74,6 +74,11 @@ def _not_finite(flight, t: float) -> str:
     )
 
 
+def _not_unit(flight, t: float) -> str:
+    values = ", ".join(f"{v:g}" for v in flight.shared.reply[:4])
+    return f"{_who(flight, t)} returned a q_bi that is no unit quaternion ({values}). Scale it to length one, scalar last."
+
+
 def _load(what: str):
     """Words for a user's load."""
 
@@ -140,5 +145,6 @@ WORDS = {
     Outcome.LOAD_RAISED: _load("raised"),
     Outcome.LOAD_SHAPE: _load("returned a wrong count of numbers"),
     Outcome.EVENT_FAILED: _event,
+    Outcome.LAW_NOT_UNIT: _not_unit,
     Outcome.LOAD_NOT_FINITE: _load("returned a number that is not finite"),
 }

@@ -73,6 +73,10 @@ def nowhere(t, measurement, memory, params):
     return [0.0] * 7
 
 
+def nowhere_compiled(t, measurement, memory, params):
+    return np.zeros(7)
+
+
 def mover(t, state, params):
     state[:] = 0.0
     return np.zeros(6)
@@ -157,10 +161,11 @@ def test_loads_and_events_that_misbehave(fly, table, words):
 
 
 @pytest.mark.kernels
-def test_an_estimator_that_gives_no_attitude(fly):
-    task = '[[software]]\nlaw = "user.py:nowhere"\nrole = "estimator"\nrate_hz = 1.0\ncompiled = false\n'
+@pytest.mark.parametrize(("name", "compiled"), [("nowhere", "false"), ("nowhere_compiled", "true")])
+def test_an_estimator_that_gives_no_attitude(fly, name, compiled):
+    task = f'[[software]]\nlaw = "user.py:{name}"\nrole = "estimator"\nrate_hz = 1.0\ncompiled = {compiled}\n'
     code, _, err = fly(SHORT + task, "--quiet")
-    assert code == 2 and "raised ValueError: q_bi must be a unit quaternion, scalar last; its length is 0. Mend" in err
+    assert code == 2 and "returned a q_bi that is no unit quaternion (0, 0, 0, 0). Scale it" in err
 
 
 def test_a_file_that_ends_the_process_as_it_is_loaded(fly, tmp_path):

@@ -39,7 +39,7 @@ class UserFunctions:
         """A slot, or the number under which the host calls the function."""
         function = function_of(record.function, scenario.folder, where)
         if is_compiled(function):
-            return self.slots.add(compiled(function, LOAD, where))
+            return self.slots.share(compiled(function, LOAD, where))
         parameters = np.array(list(record.parameters.values()), dtype=float)
         self._plain.append((function, parameters))
         self._host.add(number, lambda t: function(t, self._state, parameters))

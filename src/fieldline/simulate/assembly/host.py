@@ -136,7 +136,7 @@ class Slots:
         self.functions: list = []
 
     def add(self, function) -> int:
-        """The slot that a function is put in; InputError where none is left."""
+        """A slot of its own for a function; InputError where none is left."""
         if len(self.functions) == SLOTS:
             raise InputError(
                 f"a run takes {SLOTS} compiled {self._what}, the library's counted. Write the others in plain Python (for a law "
@@ -144,6 +144,10 @@ class Slots:
             )
         self.functions.append(function)
         return len(self.functions) - 1
+
+    def share(self, function) -> int:
+        """The slot of a function that remembers nothing: the one it has already, or a new one."""
+        return self.functions.index(function) if function in self.functions else self.add(function)
 
     def filled(self) -> Functions:
         """All slots."""

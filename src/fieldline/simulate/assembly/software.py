@@ -16,7 +16,6 @@ from fieldline.simulate.loop.flight_software import KNOWLEDGE
 from fieldline.simulate.loop.functions import LAW, no_law
 
 GROUPS = ("dipole", "wheel_torque", "thrust")
-LENGTH_TOLERANCE = 1e-3  # of a quaternion
 USUAL_MEMORY = 64  # numbers, where a law of the user's own does not say
 
 
@@ -125,23 +124,6 @@ def replies_of(scenario, task: Task) -> int:
     return sum(widths[group] for group in task.commands)
 
 
-def unit_attitude(task: Task):
-    """The task's law; of a user's estimator in plain Python, one that raises where q_bi is no unit quaternion."""
-    if task.record.role != "estimator" or not task.record.is_users:
-        return task.law
-
-    def estimator(t, measurement, memory, params):
-        """The user's, looked at."""
-        answer = task.law(t, measurement, memory, params)
-        if answer is not None and len(answer) == KNOWLEDGE:
-            length = float(np.linalg.norm(np.asarray(answer, dtype=float)[:4]))
-            if abs(length - 1.0) > LENGTH_TOLERANCE:
-                raise ValueError(f"q_bi must be a unit quaternion, scalar last; its length is {length:.6g}")
-        return answer
-
-    return estimator
-
-
 def place(software: list[Task], tasks: loop.Tasks, boards: loop.Boards, host: Host):
     """Give every task its slot or its number; (laws, memories, parameters) of the slots."""
     slots = Slots(no_law, LAW, "laws")
@@ -149,7 +131,7 @@ def place(software: list[Task], tasks: loop.Tasks, boards: loop.Boards, host: Ho
     for i, task in enumerate(software):
         if task.plain:
             row = measurement_row(boards, task.body)
-            law, memory, params = unit_attitude(task), task.memory, task.params
+            law, memory, params = task.law, task.memory, task.params
             host.add(i, lambda t, law=law, row=row, memory=memory, params=params: law(t, row, memory, params))
             continue
         tasks.slot[i] = slots.add(task.law)  # one a task: two tasks of one law remember different things

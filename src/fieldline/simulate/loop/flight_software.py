@@ -19,6 +19,8 @@ from fieldline.simulate.loop.commands import allocate, send
 from fieldline.simulate.loop.records import NEVER, Outcome
 
 LAW_RAISED, LAW_SHAPE, LAW_NOT_FINITE = int(Outcome.LAW_RAISED), int(Outcome.LAW_SHAPE), int(Outcome.LAW_NOT_FINITE)
+LAW_NOT_UNIT = int(Outcome.LAW_NOT_UNIT)
+NEARLY_UNIT = 2e-3  # of the square of an attitude's quaternion
 KNOWLEDGE = 7  # numbers of an estimator's answer
 SILENT, ANSWERED = 1, 2  # an estimator's last call
 
@@ -140,6 +142,9 @@ def run_task(t, i, run, laws, memories, parameters, call):
     if not all_finite(reply, count):
         return LAW_NOT_FINITE
     if tasks.estimator[i] != 0:
+        square = reply[0] * reply[0] + reply[1] * reply[1] + reply[2] * reply[2] + reply[3] * reply[3]
+        if abs(square - 1.0) > NEARLY_UNIT:
+            return LAW_NOT_UNIT
         believe(reply, b, boards)
         tasks.estimator[i] = ANSWERED
         return 0

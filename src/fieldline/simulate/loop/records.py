@@ -43,6 +43,7 @@ class Outcome(IntEnum):
     LOAD_SHAPE = 11
     LOAD_NOT_FINITE = 12
     EVENT_FAILED = 13
+    LAW_NOT_UNIT = 14
 
 
 class Stepping(NamedTuple):
