@@ -7,12 +7,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_GM_M3_S2, EARTH_J2
+from fieldline.errors import InputError
 from fieldline.frames.attitude import dcm_from_quaternion
 from fieldline.frames.earth_rotation import dcm_ei
 from fieldline.orbit import read_orbit
 from fieldline.simulate.scenario import Body, Elements, OrbitStart, Scenario, State, SunSynchronous
 from fieldline.simulate.scenario.attitudes import start_attitude
 from fieldline.simulate.scenario.states import orbital_axes, period_s, start_states, state_of
+from fieldline.simulate.scenario.templates import template
 
 START = np.datetime64("2026-03-01T00:00:00", "ns")
 TLE = files("fieldline").joinpath("data", "suchai3.tle")
@@ -198,3 +200,10 @@ def test_random_starts_are_even_repeatable_and_separate():
     again = turned(seed=7, attitude={"random": True})[0]
     np.testing.assert_array_equal(again, draws[7][0])
     assert np.abs(turned(index=1, seed=7, attitude={"random": True})[0] - again).max() > 1e-3
+
+
+@pytest.mark.parametrize("along_m_s", [3156.0, 4000.0, -9000.0])
+def test_a_body_beside_another_that_falls_or_leaves_is_refused(along_m_s):
+    pair = Scenario.from_toml(template("pair", "pair"))
+    with pytest.raises(InputError, match="offset_rate_o_m_s"):
+        pair.replace(**{"body.1.offset_rate_o_m_s": [along_m_s, 0.0, 0.0]}).check()

@@ -107,7 +107,13 @@ def _beside(first: tuple[np.ndarray, np.ndarray], body) -> tuple[np.ndarray, np.
     position, velocity = first
     dcm_io, rate_o = orbital_axes(position, velocity)
     offset = np.array(body.offset_o_m)
-    return position + dcm_io @ offset, velocity + dcm_io @ (np.array(body.offset_rate_o_m_s) + np.cross(rate_o, offset))
+    place = position + dcm_io @ offset
+    speed = velocity + dcm_io @ (np.array(body.offset_rate_o_m_s) + np.cross(rate_o, offset))
+    try:
+        kepler.check_orbit(kepler.elements_from_state(place, speed))
+    except InputError as error:
+        raise InputError(f'body "{body.name}", beside the first by offset_o_m and offset_rate_o_m_s: {error}') from None
+    return place, speed
 
 
 def orbital_axes(position_i: np.ndarray, velocity_i: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
