@@ -89,7 +89,8 @@ def random_state(flight, seed):
     wheels = len(flight.plant.wheels.body)
     base = STATE * len(flight.scenario.body)
     y[base : base + wheels] = rng.uniform(-0.9, 0.9, wheels) * flight.plant.wheels.momentum_max
-    y[base + wheels :] = rng.uniform(-0.7, 0.7, len(flight.plant.rods.body)) * flight.plant.rods.saturation
+    rods = len(flight.plant.rods.body)
+    y[base + wheels : base + wheels + rods] = rng.uniform(-0.7, 0.7, rods) * flight.plant.rods.saturation
     return y
 
 

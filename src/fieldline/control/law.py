@@ -7,6 +7,9 @@ one float array: the command's groups, always in the order `COMMANDS`,
     dipole        3   wanted magnetic moment, body axes [A m^2]
     wheel_torque  3   wanted torque of the wheels on the body, body axes [N m]
     thrust        n   of each thruster, 0 to 1
+    current       n   of each conductor of the body, then of each circuit of a line that ends (to_body) on it [A]
+    reel          n   of each reel on the body: rate [m/s] or tension [N]
+    attachment    n   of each sliding attachment on the body: place along its axis [m]
 
 `pack` turns a person's table of parameters into the float array: it refuses what is unknown, misplaced or senseless, and
 derives the gains that were not given.
@@ -21,7 +24,7 @@ import numpy as np
 
 from fieldline.errors import InputError, nearest, shown
 
-COMMANDS = ("dipole", "wheel_torque", "thrust")
+COMMANDS = ("dipole", "wheel_torque", "thrust", "current", "reel", "attachment")
 
 
 @dataclass(frozen=True)

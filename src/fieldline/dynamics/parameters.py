@@ -2,13 +2,15 @@
 
 The state of a run is one array y,
 
-    y = [ r_i v_i q_bi omega_bi_b | ... | wheel momenta | rod inductions ]      13 a body, 1 a wheel, 1 a rod       (1)
+    y = [ r_i v_i q_bi omega_bi_b | wheel momenta | rod inductions | r_i v_i of nodes | feeds | temperatures ]      (1)
+          13 a body                 1 a wheel       1 a rod          6 a node           2 a line  1 a warm segment
 
 and within a step the attitude is a rotation vector sigma from the step's start, q_bi = q0 exp(sigma / 2), so that
 
-    z = [ r_i v_i sigma omega_bi_b | ... | wheel momenta | rod inductions ]     12 a body, 1 a wheel, 1 a rod       (2)
+    z = [ r_i v_i sigma omega_bi_b | ... ]     12 a body, the rest as in (1)                                        (2)
 
-is what the stepper adds up. A point mass keeps its attitude and its rate at what they were.
+is what the stepper adds up. A point mass keeps its attitude and its rate at what they were. A line's feed is the
+unstretched length of its last segment [m] and the rate of that [m/s]; only a reel makes it change.
 Units SI; axes i for r and v, b for everything fixed in a body.
 """
 
@@ -92,18 +94,71 @@ class Rods(NamedTuple):
     coercivity: np.ndarray
 
 
+class Conductors(NamedTuple):
+    """Straight rigid conductors: (n,) body, middle (n, 3) [m] from the centre of mass, from end to end (n, 3) [m], body axes."""
+
+    body: np.ndarray
+    point: np.ndarray
+    wire: np.ndarray
+
+
 class Lines(NamedTuple):
-    """Massless visco-elastic lines between two bodies: tension only."""
+    """Visco-elastic lines between points of two bodies, A and B: tension only, with nodes where they have mass.
+
+    The points of line k are A's attachment, its nodes, B's attachment; segment j joins the points j and j + 1. The nodes of
+    line k are those from first[k] on, its segments the rows from first[k] + k on. A reel is at B: it feeds the last
+    segment, and nodes appear and vanish there.
+    """
 
     body: np.ndarray  # (n, 2) int64
-    point: np.ndarray  # (n, 6) [m], attachment on the first and on the second body, body axes
-    length: np.ndarray  # (n,) [m], unstretched
-    stiffness: np.ndarray  # (n,) [N], E A
-    damping: np.ndarray  # (n,) [N s], tension per rate of strain
+    point: np.ndarray  # (n, 6) [m], attachment on A and on B, body axes
+    joint: np.ndarray  # (n, 2) [N m s], angular damping at A and B
+    first: np.ndarray  # (n + 1,) int64
+    nodes: np.ndarray  # (n,) int64, those that are out: changes between steps where there is a reel
+    rest: np.ndarray  # (s,) [m], unstretched length of a segment at the reference temperature; the last one's is a feed
+    stiffness: np.ndarray  # (s,) [N], E A
+    damping: np.ndarray  # (s,) [N s], tension per rate of strain
+    linear_mass: np.ndarray  # (s,) [kg/m]
+    diameter: np.ndarray  # (s,) [m], 0: the air does not feel it
+    drag_coefficient: np.ndarray  # (s,)
+    expansion: np.ndarray  # (n,) [1/K]
+    reference: np.ndarray  # (n,) [K], temperature at which `rest` holds
+    warm: np.ndarray  # (n + 1,) int64, where the temperatures of each line's segments start; none for a cold line
+    exposed: np.ndarray  # (n,) int64, 1: air or current act on it, from what `Ambient` holds
+    reel: np.ndarray  # (n,) int64, NO_REEL, RATE_REEL or TENSION_REEL
+    reel_lag: np.ndarray  # (n,) [s], of a reel that follows a rate; [kg], effective mass of one that follows a tension
+    spacing: np.ndarray  # (n,) [m], unstretched length of a full segment beside a reel
+    stored: np.ndarray  # (n,) [kg], mass of the line that is out at the start: the rest is in the reel's body
+
+
+NO_REEL, RATE_REEL, TENSION_REEL = range(3)
+
+
+class Ambient(NamedTuple):
+    """What surrounds the segments of exposed lines, one row each, held between refreshes."""
+
+    field_i: np.ndarray  # (s, 3) [T]
+    density: np.ndarray  # (s,) [kg/m^3], of the air
+    current: np.ndarray  # (s,) [A], positive from A to B
+    heating: np.ndarray  # (s,) [W/m], taken in from outside and by the current
+    emf: np.ndarray  # (n,) [V], of each line from A to B
+    power: np.ndarray  # (n,) [W], electric power delivered to each line's load
+
+
+class Sliders(NamedTuple):
+    """Attachments that move along an axis of the body: (n,) line, end 0 or 1, axis (n, 3), speed (n,) [m/s]."""
+
+    line: np.ndarray
+    end: np.ndarray
+    axis: np.ndarray
+    speed: np.ndarray
 
 
 class UserLoads(NamedTuple):
-    """Forces and torques of the user's own: a compiled function's slot, or PLAIN_LOAD and up for plain Python."""
+    """Forces and torques of the user's own: a compiled function's slot, or PLAIN_LOAD and up for plain Python.
+
+    A load on line k acts on each of its nodes: its body is the number of bodies plus k.
+    """
 
     body: np.ndarray  # (n,) int64
     slot: np.ndarray  # (n,) int64
@@ -120,7 +175,9 @@ class Plant(NamedTuple):
     wheels: Wheels
     thrusters: Thrusters
     rods: Rods
+    conductors: Conductors
     lines: Lines
+    sliders: Sliders
     user: UserLoads
     magnetic: bool  # the field is needed by some body
 
@@ -133,13 +190,25 @@ class Inputs(NamedTuple):
     dipole_since: np.ndarray  # (torquers,) [s]
     wheel_torque: np.ndarray  # (wheels,) [N m] of the motor on the wheel
     thrust: np.ndarray  # (thrusters,) 0 to 1
+    current: np.ndarray  # (conductors,) [A]
+    circuit: np.ndarray  # (lines,) [A] or part of full current: what the circuit of a line is told
+    reel: np.ndarray  # (lines,) [m/s] or [N]: what the reel of a line is told
+    slide_from: np.ndarray  # (sliders,) [m] along its axis
+    slide_to: np.ndarray  # (sliders,) [m]
+    slide_since: np.ndarray  # (sliders,) [s]
+
+
+def _tail(plant: Plant) -> int:
+    """Numbers after the bodies."""
+    lines = plant.lines
+    return len(plant.wheels.body) + len(plant.rods.body) + 6 * int(lines.first[-1]) + 2 * len(lines.nodes) + int(lines.warm[-1])
 
 
 def state_size(plant: Plant) -> int:
     """Numbers in y of equation (1)."""
-    return STATE * len(plant.bodies.mass) + len(plant.wheels.body) + len(plant.rods.body)
+    return STATE * len(plant.bodies.mass) + _tail(plant)
 
 
 def tangent_size(plant: Plant) -> int:
     """Numbers in z of equation (2)."""
-    return TANGENT * len(plant.bodies.mass) + len(plant.wheels.body) + len(plant.rods.body)
+    return TANGENT * len(plant.bodies.mass) + _tail(plant)

@@ -18,63 +18,43 @@ from __future__ import annotations
 from math import sqrt, tan
 
 from fieldline.compiled import counting, inner, kernel, merged
+from fieldline.dynamics.layout import NOTHING, attitude_at, feeds_at, nodes_at, store, three
+from fieldline.dynamics.lines.chain import lines_rates, weight_per_mass
+from fieldline.dynamics.lines.end_mass import burdened_rates
+from fieldline.dynamics.load_log import (
+    CONDUCTORS,
+    DIPOLES,
+    DISTURBANCE,
+    DRAG,
+    EDDY,
+    GRADIENT,
+    GRAVITY,
+    HYSTERESIS,
+    LINES,
+    SOLAR,
+    THRUSTERS,
+    TORQUERS,
+    USER,
+    WHEELS,
+    impose,
+    note,
+)
 from fieldline.dynamics.loads.hysteresis import MU0, induction_rate
-from fieldline.dynamics.loads.line import line_pull
 from fieldline.dynamics.loads.magnetic import commanded_dipole, dipole_torque, eddy_torque, row9
 from fieldline.dynamics.loads.surface import drag_force, solar_force
 from fieldline.dynamics.parameters import PLAIN_LOAD, TANGENT
 from fieldline.environment.atmosphere import density_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
 from fieldline.environment.field import field_kernel
-from fieldline.environment.gravity import gravity_kernel
-from fieldline.frames.attitude import quat_exp, quat_mul, to_body, to_inertial
+from fieldline.frames.attitude import to_body, to_inertial
 from fieldline.frames.matrices import matvec, transpose
 from fieldline.frames.vectors import add, axpy, cross, dot, put, scale, sub, vec
 from fieldline.mechanics.rigid_body import euler_rate, gravity_gradient_torque
 
-# Rows of the log, one a load: force_i [N] and torque_b [N m] on every body.
-LOADS = (
-    "gravity",
-    "gravity_gradient",
-    "torquers",
-    "dipoles",
-    "eddy_currents",
-    "hysteresis",
-    "drag",
-    "solar_pressure",
-    "thrusters",
-    "wheels",
-    "lines",
-    "disturbance",
-    "user",
-)
-(GRAVITY, GRADIENT, TORQUERS, DIPOLES, EDDY, HYSTERESIS, DRAG, SOLAR, THRUSTERS, WHEELS, LINES, DISTURBANCE, USER) = range(13)
-NOTHING = (0.0, 0.0, 0.0)
 FINITE = 1e300  # what is not below this is infinite or not a number
 RAISED, WRONG_SHAPE, NOT_FINITE = 1, 2, 3  # what a user's load may do
 LAW_AT_WORK, LOAD_AT_WORK, EVENT_AT_WORK = 1, 2, 3  # whose compiled function is running, should it raise
 FIELD_STEP_S = 1.0  # over which the field's change along the orbit is taken, for the rods
-
-
-@inner
-def three(z, at):
-    """Three numbers of an array as a tuple."""
-    return (z[at], z[at + 1], z[at + 2])
-
-
-@inner
-def store(z, at, v):
-    """A tuple as three numbers of an array."""
-    z[at] = v[0]
-    z[at + 1] = v[1]
-    z[at + 2] = v[2]
-
-
-@inner
-def attitude_at(z, start, b):
-    """q_bi of body b within a step."""
-    q0 = (start[b, 0], start[b, 1], start[b, 2], start[b, 3])
-    return quat_mul(q0, quat_exp(three(z, TANGENT * b + 6)))
 
 
 @inner
@@ -174,44 +154,6 @@ def thruster_load(b, plant, inputs):
     return force, torque
 
 
-@inner
-def line_end(z, start, b, point_b):
-    """Attachment point of a line on body b: offset from its centre, place and velocity, inertial axes."""
-    base = TANGENT * b
-    q = attitude_at(z, start, b)
-    offset_i = to_inertial(q, point_b)
-    swing_i = to_inertial(q, cross(three(z, base + 9), point_b))
-    return add(three(z, base), offset_i), add(three(z, base + 3), swing_i)
-
-
-@inner
-def line_loads(z, start, plant, log, out):
-    """Add force_i [N] and torque_b [N m] of all lines on every body to `out` (bodies, 6)."""
-    lines = plant.lines
-    for k in range(lines.length.shape[0]):
-        one, two = lines.body[k, 0], lines.body[k, 1]
-        point1 = (lines.point[k, 0], lines.point[k, 1], lines.point[k, 2])
-        point2 = (lines.point[k, 3], lines.point[k, 4], lines.point[k, 5])
-        place1, rate1 = line_end(z, start, one, point1)
-        place2, rate2 = line_end(z, start, two, point2)
-        pull = line_pull(place1, rate1, place2, rate2, lines.length[k], lines.stiffness[k], lines.damping[k])
-        torque1 = cross(point1, to_body(attitude_at(z, start, one), pull))
-        torque2 = cross(to_body(attitude_at(z, start, two), pull), point2)
-        impose(log, LINES, one, pull, torque1, out)
-        impose(log, LINES, two, scale(-1.0, pull), torque2, out)
-
-
-@inner
-def impose(log, load, b, force_i, torque_b, out):
-    """Add a load to those of body b, and to the log where one is kept."""
-    for j in range(3):
-        out[b, j] += force_i[j]
-        out[b, 3 + j] += torque_b[j]
-        if log.shape[0] > 0:
-            log[load, b, j] += force_i[j]
-            log[load, b, 3 + j] += torque_b[j]
-
-
 @counting
 def ask(loads, slot, t, state, parameters, reply):
     """A compiled function's answer into `reply`; how many numbers it gave. Counts references: the answer is a new array."""
@@ -222,11 +164,66 @@ def ask(loads, slot, t, state, parameters, reply):
 
 
 @inner
-def user_loads(t, z, start, plant, loads, call, shared, log, out):
-    """Add the user's loads to `out`; 0, or what one of them did wrong."""
+def asked(k, t, plant, loads, call, shared):
+    """The answer of user load k for shared.state into shared.reply: 0, or what it did wrong."""
     user = plant.user
+    slot = user.slot[k]
+    shared.culprit[0] = k
+    if slot >= PLAIN_LOAD:
+        if call(slot, t) != 0:
+            return RAISED
+    else:
+        parameters = user.parameters[user.first[k] : user.first[k + 1]]
+        shared.culprit[2] = LOAD_AT_WORK
+        shared.replies[0] = ask(loads, slot, t, shared.state, parameters, shared.reply)
+        shared.culprit[2] = 0
+    if shared.replies[0] != 6:
+        return WRONG_SHAPE
+    for j in range(6):
+        if not abs(shared.reply[j]) < FINITE:
+            return NOT_FINITE
+    return 0
+
+
+@inner
+def node_loads(k, line, t, z, plant, loads, call, shared, out):
+    """Add user load k to every node of a line: 0, or what it did wrong.
+
+    It is given r_i, v_i, then the unstretched length from A to the node [m], its mass [kg], and zeros.
+    """
+    lines = plant.lines
+    row, feed = lines.first[line] + line, feeds_at(plant) + 2 * line
+    along = 0.0
+    for j in range(lines.nodes[line]):
+        at = nodes_at(plant) + 6 * (lines.first[line] + j)
+        after = z[feed] if j + 1 == lines.nodes[line] else lines.rest[row + j + 1]
+        along += lines.rest[row + j]
+        mass = 0.5 * (lines.linear_mass[row + j] * lines.rest[row + j] + lines.linear_mass[row + j + 1] * after)
+        shared.state[:] = 0.0
+        for i in range(6):
+            shared.state[i] = z[at + i]
+        shared.state[6] = along
+        shared.state[7] = mass
+        status = asked(k, t, plant, loads, call, shared)
+        if status != 0:
+            return status
+        for i in range(3):
+            out[at + 3 + i] += shared.reply[i] / mass
+    return 0
+
+
+@inner
+def user_loads(t, z, start, plant, loads, call, shared, log, out):
+    """Add the user's loads to shared.outer, those on nodes to the rates `out`; 0, or what one of them did wrong."""
+    user = plant.user
+    bodies = plant.bodies.mass.shape[0]
     for k in range(user.body.shape[0]):
         b = user.body[k]
+        if b >= bodies:
+            status = node_loads(k, b - bodies, t, z, plant, loads, call, shared, out)
+            if status != 0:
+                return status
+            continue
         q = attitude_at(z, start, b)
         for j in range(6):
             shared.state[j] = z[TANGENT * b + j]
@@ -234,41 +231,31 @@ def user_loads(t, z, start, plant, loads, call, shared, log, out):
             shared.state[6 + j] = q[j]
         for j in range(3):
             shared.state[10 + j] = z[TANGENT * b + 9 + j]
-        slot = user.slot[k]
-        shared.culprit[0] = k
-        if slot >= PLAIN_LOAD:
-            if call(slot, t) != 0:
-                return RAISED
-        else:
-            parameters = user.parameters[user.first[k] : user.first[k + 1]]
-            shared.culprit[2] = LOAD_AT_WORK
-            shared.replies[0] = ask(loads, slot, t, shared.state, parameters, shared.reply)
-            shared.culprit[2] = 0
-        reply = shared.reply
-        if shared.replies[0] != 6:
-            return WRONG_SHAPE
-        for j in range(6):
-            if not abs(reply[j]) < FINITE:
-                return NOT_FINITE
-        impose(log, USER, b, three(reply, 0), three(reply, 3), out)
+        status = asked(k, t, plant, loads, call, shared)
+        if status != 0:
+            return status
+        impose(log, USER, b, three(shared.reply, 0), three(shared.reply, 3), shared.outer)
     return 0
 
 
 @inner
-def note(log, load, b, force_i, torque_b):
-    """Keep a load's force and torque, where a log (loads, bodies, 6) is kept."""
-    if log.shape[0] > 0:
-        for j in range(3):
-            log[load, b, j] = force_i[j]
-            log[load, b, 3 + j] = torque_b[j]
+def conductor_load(b, field_b, plant, inputs):
+    """Force and torque of body b's conductors [N, N m], body axes: I wire x B, at each one's middle."""
+    conductors = plant.conductors
+    force, torque = NOTHING, NOTHING
+    for k in range(conductors.body.shape[0]):
+        if conductors.body[k] == b:
+            push = scale(inputs.current[k], cross(vec(conductors.wire, k), field_b))
+            force = add(force, push)
+            torque = add(torque, cross(vec(conductors.point, k), push))
+    return force, torque
 
 
 @merged
-def magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, log, out):
+def magnetic_torque(t, b, z, q, field_b, dcm_ei, plant, inputs, log, out):
     """Torque of the field on body b [N m], body axes."""
     bodies = plant.bodies
-    r, omega = three(z, TANGENT * b), three(z, TANGENT * b + 9)
-    field_b = to_body(q, vec(frozen, b) if frozen.shape[0] > 0 else field_at(r, dcm_ei, plant.surroundings))
+    omega = three(z, TANGENT * b + 9)
     drive = cross(commanded_dipole(t, b, plant.torquers, inputs), field_b)
     note(log, TORQUERS, b, NOTHING, drive)
     still = dipole_torque(field_b, b, bodies)
@@ -303,33 +290,26 @@ def surface_loads(t, b, z, q, dcm_ei, plant, log):
     return force, torque
 
 
-@merged
-def turning(b, z, torque, plant, inputs, log, out):
-    """Euler's equation (3) of body b under a torque [N m], body axes, its wheels' part added: into `out`."""
-    base = TANGENT * b
-    sigma, omega = three(z, base + 6), three(z, base + 9)
-    if plant.wheels.body.shape[0] > 0:
-        motors = wheel_reaction(b, plant, inputs, out)
-        note(log, WHEELS, b, NOTHING, motors)
-        torque = sub(add(torque, motors), cross(omega, wheel_momentum(b, z, plant)))
-    inertia, inverse = row9(plant.bodies.inertia, b), row9(plant.bodies.inertia_inv, b)
-    store(out, base + 6, turn_rate(sigma, omega))
-    store(out, base + 9, euler_rate(omega, inertia, inverse, torque))
+@inner
+def turning_torque(b, z, torque, plant, inputs, log, out):
+    """Torque on body b [N m], body axes, with what its wheels add: their motors and their momentum carried round."""
+    if plant.wheels.body.shape[0] == 0:
+        return torque
+    motors = wheel_reaction(b, plant, inputs, out)
+    note(log, WHEELS, b, NOTHING, motors)
+    return sub(add(torque, motors), cross(three(z, TANGENT * b + 9), wheel_momentum(b, z, plant)))
 
 
 @merged
-def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, outer, log, out):
-    """Rates (1) to (3) of body b; outer (bodies, 6): loads that come from other bodies or the user."""
+def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, shared, log, out):
+    """Rates (1) to (3) of body b; shared.outer: loads that come from other bodies or the user."""
     surroundings, bodies = plant.surroundings, plant.bodies
     base = TANGENT * b
     r = three(z, base)
     q = attitude_at(z, start, b)
-    if surroundings.rotating:
-        g = matvec(transpose(dcm_ei), gravity_kernel(matvec(dcm_ei, r), surroundings.gravity))
-    else:
-        g = gravity_kernel(r, surroundings.gravity)
+    g = weight_per_mass(r, dcm_ei, surroundings)
     note(log, GRAVITY, b, scale(bodies.mass[b], g), NOTHING)
-    force, torque = three(outer[b], 0), three(outer[b], 3)
+    force, torque = three(shared.outer[b], 0), three(shared.outer[b], 3)
     if bodies.drag[b] != 0.0 or bodies.solar[b] != 0.0:
         push, lever = surface_loads(t, b, z, q, dcm_ei, plant, log)
         force, torque = add(force, push), add(torque, lever)
@@ -339,8 +319,9 @@ def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, outer, log, out):
         note(log, THRUSTERS, b, push, lever)
         force, torque = add(force, push), add(torque, lever)
     store(out, base, three(z, base + 3))
-    store(out, base + 3, axpy(1.0 / bodies.mass[b], force, g))
     if bodies.rigid[b] == 0:
+        heavy = bodies.mass[b] + shared.end_mass[b, 0]
+        store(out, base + 3, scale(1.0 / heavy, axpy(bodies.mass[b], g, force)))
         store(out, base + 6, NOTHING)
         store(out, base + 9, NOTHING)
         return
@@ -349,10 +330,27 @@ def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, outer, log, out):
         note(log, GRADIENT, b, NOTHING, lever)
         torque = add(torque, lever)
     if plant.magnetic:
-        torque = add(torque, magnetic_torque(t, b, z, q, dcm_ei, plant, inputs, frozen, log, out))
+        field_b = to_body(q, vec(frozen, b) if frozen.shape[0] > 0 else field_at(r, dcm_ei, surroundings))
+        torque = add(torque, magnetic_torque(t, b, z, q, field_b, dcm_ei, plant, inputs, log, out))
+        if plant.conductors.body.shape[0] > 0:
+            push_b, lever = conductor_load(b, field_b, plant, inputs)
+            push = to_inertial(q, push_b)
+            note(log, CONDUCTORS, b, push, lever)
+            force, torque = add(force, push), add(torque, lever)
     steady = add(vec(bodies.torque_b, b), to_body(q, vec(bodies.torque_i, b)))
     note(log, DISTURBANCE, b, NOTHING, steady)
-    turning(b, z, add(torque, steady), plant, inputs, log, out)
+    torque = turning_torque(b, z, add(torque, steady), plant, inputs, log, out)
+    inertia = row9(bodies.inertia, b)
+    omega = three(z, base + 9)
+    store(out, base + 6, turn_rate(three(z, base + 6), omega))
+    if shared.end_mass[b, 0] != 0.0:
+        total_b = to_body(q, axpy(bodies.mass[b], g, force))
+        along_b, turn_b = burdened_rates(omega, bodies.mass[b], inertia, shared.end_mass[b], total_b, torque)
+        store(out, base + 3, to_inertial(q, along_b))
+        store(out, base + 9, turn_b)
+    else:
+        store(out, base + 3, axpy(1.0 / bodies.mass[b], force, g))
+        store(out, base + 9, euler_rate(omega, inertia, row9(bodies.inertia_inv, b), torque))
 
 
 @inner
@@ -362,19 +360,18 @@ def plant_rates(t, z, start, plant, inputs, frozen, loads, call, shared, log, ou
     start (bodies, 4): attitudes at the step's start. frozen: field [T] to use, (bodies, 3); (0, 3): what it is here.
     """
     dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
-    outer = shared.outer
-    lined, used = plant.lines.length.shape[0] > 0, plant.user.body.shape[0] > 0
+    lined, used = plant.lines.nodes.shape[0] > 0, plant.user.body.shape[0] > 0
     if lined or used:
-        outer[:, :] = 0.0
+        shared.outer[:, :] = 0.0
         if log.shape[0] > 0:
             log[LINES] = 0.0
             log[USER] = 0.0
     if lined:
-        line_loads(z, start, plant, log, outer)
+        lines_rates(t, z, start, dcm_ei, plant, inputs, shared, log, out)
     if used:
-        status = user_loads(t, z, start, plant, loads, call, shared, log, outer)
+        status = user_loads(t, z, start, plant, loads, call, shared, log, out)
         if status != 0:
             return status
     for b in range(plant.bodies.mass.shape[0]):
-        body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, outer, log, out)
+        body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, shared, log, out)
     return 0

@@ -13,8 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.compiled import inner, kernel, merged
-from fieldline.dynamics.parameters import STATE, TANGENT, Plant, state_size, tangent_size
-from fieldline.dynamics.rates import freeze_fields, plant_rates, store, three
+from fieldline.dynamics.layout import store, three
+from fieldline.dynamics.lines.chain import END_MASS
+from fieldline.dynamics.load_log import LOADS
+from fieldline.dynamics.parameters import STATE, TANGENT, Ambient, Plant, state_size, tangent_size
+from fieldline.dynamics.rates import freeze_fields, plant_rates
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit
 from fieldline.integrate.steps import combine
 
@@ -37,6 +40,9 @@ class Shared(NamedTuple):
     """Arrays through which compiled code and a user's functions meet."""
 
     outer: np.ndarray  # (bodies, 6) forces_i and torques_b of lines and of the user's loads
+    end_mass: np.ndarray  # (bodies, 10) of the lines' ends, equation (3) of `fieldline.dynamics.lines.chain`
+    tension: np.ndarray  # (segments,) [N] at the last evaluation
+    ambient: Ambient
     state: np.ndarray  # (13,) state of the body that a user's load acts on
     reply: np.ndarray  # (64 or more,) what a user's function answered
     replies: np.ndarray  # (1,) int64, how many numbers that is
@@ -60,14 +66,20 @@ def new_work(plant: Plant, evaluations: int, *, once_a_step: bool = False, loads
     )
 
 
-def new_shared(plant: Plant) -> Shared:
-    """Arrays for a plant's users' functions."""
+def new_shared(plant: Plant, actuators: int = 0) -> Shared:
+    """Arrays for a plant's lines and users' functions, and for the commands of so many actuators."""
+    segments, lines = len(plant.lines.rest), len(plant.lines.nodes)
     return Shared(
         outer=np.zeros((len(plant.bodies.mass), 6)),
+        end_mass=np.zeros((len(plant.bodies.mass), END_MASS)),
+        tension=np.zeros(segments),
+        ambient=Ambient(
+            np.zeros((segments, 3)), np.zeros(segments), np.zeros(segments), np.zeros(segments), np.zeros(lines), np.zeros(lines)
+        ),
         state=np.zeros(13),
         reply=np.zeros(64 + len(plant.thrusters.body)),
         replies=np.zeros(1, dtype=np.int64),
-        commands=np.zeros(len(plant.torquers.body) + len(plant.wheels.body) + len(plant.thrusters.body)),
+        commands=np.zeros(actuators),
         culprit=np.zeros(3, dtype=np.int64),
     )
 
@@ -147,8 +159,6 @@ def evaluate(t, y, plant, inputs, loads, call, shared, work, out):
 
 def rates_of(t: float, y, plant: Plant, inputs, loads, call, shared: Shared) -> tuple[np.ndarray, np.ndarray]:
     """(dz/dt, log) at a state: the right-hand side once, with force_i and torque_b of every load, (loads, bodies, 6)."""
-    from fieldline.dynamics.rates import LOADS
-
     if len(y) != state_size(plant):
         raise ValueError(f"the plant's state has {state_size(plant)} numbers; got {len(y)}")
     work = new_work(plant, 1, loads=len(LOADS))

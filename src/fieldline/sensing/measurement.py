@@ -30,9 +30,12 @@ class Measurement(NamedTuple):
     wheel_momentum: np.ndarray  # (n wheels) [N m s] about each wheel's axis
     dipole_b: np.ndarray  # (3) dipole now commanded by the torquers [A m^2]
     valid: np.ndarray  # (6) 1.0 or 0.0
+    tension: np.ndarray  # (n lines) [N] at this body, of each line that is attached
+    line_length: np.ndarray  # (n lines) [m] unstretched length that is out
+    line_rate: np.ndarray  # (n lines) [m/s] at which a reel feeds it
 
 
-def new_measurement(n_faces: int = 0, n_wheels: int = 0) -> Measurement:
+def new_measurement(n_faces: int = 0, n_wheels: int = 0, n_lines: int = 0) -> Measurement:
     """Nothing read yet: NaN, no momentum, no dipole, nothing valid."""
     return Measurement(
         field_b=np.full(3, np.nan),
@@ -47,4 +50,7 @@ def new_measurement(n_faces: int = 0, n_wheels: int = 0) -> Measurement:
         wheel_momentum=np.zeros(n_wheels),
         dipole_b=np.zeros(3),
         valid=np.zeros(6),
+        tension=np.zeros(n_lines),
+        line_length=np.zeros(n_lines),
+        line_rate=np.zeros(n_lines),
     )

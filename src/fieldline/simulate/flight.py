@@ -14,12 +14,14 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fieldline.dynamics.layout import starts_in_state
 from fieldline.dynamics.parameters import TANGENT, tangent_size
 from fieldline.dynamics.rates import EVENT_AT_WORK, LAW_AT_WORK, LOAD_AT_WORK
 from fieldline.dynamics.step import new_shared, new_work
 from fieldline.errors import InputError, shown
 from fieldline.integrate.tableau import DOP853, RK4
 from fieldline.simulate.assembly import boards as made
+from fieldline.simulate.assembly.actuators import actuators_of, inputs_of
 from fieldline.simulate.assembly.design import Design
 from fieldline.simulate.assembly.functions import UserFunctions, events_of
 from fieldline.simulate.assembly.host import Host
@@ -33,6 +35,7 @@ from fieldline.simulate.scenario.states import period_s, start_states
 
 FLOOR_M = 80e3  # height below which neither orbit nor air models mean anything
 NOISE_STREAM = 0x6E6F6973  # keeps the sensors' draws apart from those of the start
+TEMPERATURE_TOLERANCE_K = 1e-3
 CHUNK_S = 0.2  # of wall time between returns
 FIRST_CHUNK = 200  # steps
 RAISED_COMPILED = {LAW_AT_WORK: Outcome.LAW_RAISED, LOAD_AT_WORK: Outcome.LOAD_RAISED, EVENT_AT_WORK: Outcome.EVENT_FAILED}
@@ -53,22 +56,22 @@ class Flight:
         self.plant = plant_of(scenario, self.duration_s, user.loads)
         self.y = start_of(scenario, self.plant, self.seed)
         self.start = self.y.copy()
-        self.shared = new_shared(self.plant)
+        self.actuators = actuators_of(scenario)
+        self.shared = new_shared(self.plant, len(self.actuators.body))
         self.host.connect(self.shared)
         user.connect(self.shared)
         self.software = software_of(scenario, Design(scenario, self.plant))
-        self.actuators = made.actuators_of(scenario, self.plant)
-        self.tasks = tasks_of(scenario, self.software, self.actuators)
+        self.tasks = tasks_of(self.software, self.actuators)
         self.boards = made.boards_of(scenario)
         self.laws, self.memories, self.parameters = place(self.software, self.tasks, self.boards, self.host)
         middle = scenario.time.start + np.timedelta64(round(0.5e9 * self.duration_s), "ns")
         estimated = [any(t.body == b and t.record.role == "estimator" for t in self.software) for b in range(len(scenario.body))]
         self.sensors = made.sensors_of(scenario, self.plant, estimated, middle)
-        self.inputs = made.inputs_of(self.plant)
+        self.inputs = inputs_of(scenario, self.plant)
         self.schedule = made.schedule_of(scenario, self.software, scenario.time.output_step_s)
         self.stepping = stepping_of(scenario, self.plant, self.duration_s)
         self.events = events_of(scenario, user.events)
-        self.record = made.record_of(scenario, self.plant, self.schedule, self.duration_s)
+        self.record = made.record_of(scenario, self.plant, self.schedule, len(self.actuators.body), self.duration_s)
         self.clock = made.clock_of(scenario.integrator.step_s)
         self.work = new_work(
             self.plant, self.stepping.tableau.evaluations, once_a_step=scenario.integrator.field_update == "step"
@@ -139,6 +142,10 @@ def stepping_of(scenario, plant, duration_s: float) -> Stepping:
     bodies = len(plant.bodies.mass)
     for b in range(bodies):
         absolute[TANGENT * b : TANGENT * (b + 1)] = allowed
+    nodes, feeds, temperatures = (start - bodies for start in starts_in_state(plant))
+    absolute[nodes:feeds] = np.tile(allowed[:6], (feeds - nodes) // 6)
+    absolute[feeds:temperatures] = np.tile([allowed[0], allowed[3]], (temperatures - feeds) // 2)
+    absolute[temperatures:] = TEMPERATURE_TOLERANCE_K
     return Stepping(
         tableau=DOP853 if adaptive else RK4,
         adaptive=adaptive,

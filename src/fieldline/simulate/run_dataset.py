@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldline.dynamics.load_log import LOADS
 from fieldline.dynamics.parameters import STATE
-from fieldline.dynamics.rates import LOADS
 from fieldline.frames.matrices import matvec
 from fieldline.simulate.assembly.boards import KINDS
+from fieldline.simulate.assembly.lines import line_names, sliders
 from fieldline.simulate.assembly.plant import each
+from fieldline.simulate.line_dataset import put_lines
 from fieldline.simulate.loop.records import TASK
 from fieldline.simulate.outcome import sentence
 
@@ -20,6 +22,15 @@ if TYPE_CHECKING:
     import xarray
 
 AXES = ["x", "y", "z"]
+ACTUATORS = (
+    ("magnetorquer", "torquer_moment", "A m2", "dipole of each torquer along its axis"),
+    ("wheel", "wheel_torque", "N m", "motor torque on each wheel, as commanded"),
+    ("thruster", "thrust", "1", "thrust over full thrust"),
+    ("conductor", "conductor_current", "A", "current of each conductor"),
+    ("circuit", "circuit_command", "1", "what the circuit of each line is told"),
+    ("reel", "reel_command", "1", "what each reel is told: rate [m/s] or tension [N]"),
+    ("slider", "slider_place", "m", "place of each sliding attachment along its axis"),
+)  # dimension, variable, unit and meaning of each kind, in the order of the loop's axis of actuators
 SENSOR_UNITS = {
     "magnetometer": ("T", "reading of the magnetometer", "b"),
     "gyro": ("rad s-1", "reading of the gyro", "b"),
@@ -50,6 +61,7 @@ def dataset_of(flight) -> xarray.Dataset:
     _surroundings(data, flight, rows)
     _loads(data, flight, rows)
     _actuators(data, flight, rows)
+    put_lines(data, flight, rows)
     _known(data, flight, rows)
     _readings(data, flight, start)
     _events(data, flight, start)
@@ -57,7 +69,7 @@ def dataset_of(flight) -> xarray.Dataset:
     return data
 
 
-def _put(data, name: str, dims, values, units: str, long_name: str, axes: str = "") -> None:
+def put(data, name: str, dims, values, units: str, long_name: str, axes: str = "") -> None:
     """One variable with its attributes."""
     attrs = {"units": units, "long_name": long_name}
     data[name] = (dims, values, attrs | ({"axes": axes} if axes else {}))
@@ -73,10 +85,10 @@ def _motion(data, flight, rows: int) -> None:
     """Place, velocity, attitude and rate."""
     state = _bodies(flight, rows)
     vector = ("time", "body", "axis")
-    _put(data, "position_i", vector, state[..., 0:3], "m", "position from the Earth's centre", "i")
-    _put(data, "velocity_i", vector, state[..., 3:6], "m s-1", "velocity", "i")
-    _put(data, "q_bi", ("time", "body", "quaternion"), state[..., 6:10], "1", "attitude, scalar last: body to inertial", "bi")
-    _put(data, "omega_bi_b", vector, state[..., 10:13], "rad s-1", "angular rate", "b")
+    put(data, "position_i", vector, state[..., 0:3], "m", "position from the Earth's centre", "i")
+    put(data, "velocity_i", vector, state[..., 3:6], "m s-1", "velocity", "i")
+    put(data, "q_bi", ("time", "body", "quaternion"), state[..., 6:10], "1", "attitude, scalar last: body to inertial", "bi")
+    put(data, "omega_bi_b", vector, state[..., 10:13], "rad s-1", "angular rate", "b")
 
 
 def _surroundings(data, flight, rows: int) -> None:
@@ -97,12 +109,12 @@ def _surroundings(data, flight, rows: int) -> None:
             place_e[k, b] = matvec(dcm_ei, tuple(state[k, b, :3]))
     latitude, longitude, height = geodetic_from_itrs(place_e)
     vector, scalar = ("time", "body", "axis"), ("time", "body")
-    _put(data, "field_i", vector, field_i, "T", "the Earth's magnetic field", "i")
-    _put(data, "field_b", vector, turned.reshape(rows, count, 3), "T", "the Earth's magnetic field", "b")
-    _put(data, "sunlit", scalar, flight.record.sunlit[:rows], "1", "visible part of the Sun's disc")
-    _put(data, "latitude_deg", scalar, np.degrees(latitude), "degree", "geodetic latitude")
-    _put(data, "longitude_deg", scalar, np.degrees(longitude), "degree", "longitude, east positive")
-    _put(data, "altitude_m", scalar, height, "m", "height over the WGS 84 ellipsoid")
+    put(data, "field_i", vector, field_i, "T", "the Earth's magnetic field", "i")
+    put(data, "field_b", vector, turned.reshape(rows, count, 3), "T", "the Earth's magnetic field", "b")
+    put(data, "sunlit", scalar, flight.record.sunlit[:rows], "1", "visible part of the Sun's disc")
+    put(data, "latitude_deg", scalar, np.degrees(latitude), "degree", "geodetic latitude")
+    put(data, "longitude_deg", scalar, np.degrees(longitude), "degree", "longitude, east positive")
+    put(data, "altitude_m", scalar, height, "m", "height over the WGS 84 ellipsoid")
 
 
 def _loads(data, flight, rows: int) -> None:
@@ -111,31 +123,44 @@ def _loads(data, flight, rows: int) -> None:
     acting = [k for k in range(len(LOADS)) if np.any(log[:, k])]
     data.coords["load"] = [LOADS[k] for k in acting]
     dims = ("time", "load", "body", "axis")
-    _put(data, "force_i", dims, log[:, acting, :, 0:3], "N", "force of each load", "i")
-    _put(data, "torque_b", dims, log[:, acting, :, 3:6], "N m", "torque of each load", "b")
+    put(data, "force_i", dims, log[:, acting, :, 0:3], "N", "force of each load", "i")
+    put(data, "torque_b", dims, log[:, acting, :, 3:6], "N m", "torque of each load", "b")
 
 
 def _actuators(data, flight, rows: int) -> None:
-    """Torquers, wheels, thrusters and rods, each kind that there is."""
-    bodies = flight.scenario.body
-    count, at = len(bodies), 0
-    for kind, name, units, words in (
-        ("magnetorquer", "torquer_moment", "A m2", "dipole of each torquer along its axis"),
-        ("wheel", "wheel_torque", "N m", "motor torque on each wheel, as commanded"),
-        ("thruster", "thrust", "1", "thrust over full thrust"),
+    """Torquers, wheels, thrusters, conductors, reels, sliders and rods, each kind that there is."""
+    bodies, lines = flight.scenario.body, line_names(flight.scenario)
+    count, wheels = len(bodies), _names(bodies, "wheel")
+    reeled = [name for name, line in zip(lines, flight.scenario.line, strict=True) if line.reel is not None]
+    circuits = [lines[k] for k in flight.actuators.target[flight.actuators.ends[3] : flight.actuators.ends[4]]]
+    sliding = [f"{lines[k]}.slider_{j + 1}" for j, (k, _) in enumerate(sliders(flight.scenario))]
+    first = 0
+    for (kind, name, units, words), names, last in zip(
+        ACTUATORS,
+        (
+            _names(bodies, "magnetorquer"),
+            wheels,
+            _names(bodies, "thruster"),
+            _names(bodies, "conductor"),
+            circuits,
+            reeled,
+            sliding,
+        ),
+        flight.actuators.ends,
+        strict=True,
     ):
-        names = _names(bodies, kind)
         if names:
             data.coords[kind] = names
-            _put(data, name, ("time", kind), flight.record.actuators[:rows, at : at + len(names)], units, words)
-        at += len(names)
-    wheels, rods = _names(bodies, "wheel"), each(bodies, "hysteresis_rod")
+            put(data, name, ("time", kind), flight.record.actuators[:rows, first:last], units, words)
+        first = last
+    rods = each(bodies, "hysteresis_rod")
     rest = flight.record.state[:rows, STATE * count :]
     if wheels:
-        _put(data, "wheel_momentum", ("time", "wheel"), rest[:, : len(wheels)], "N m s", "momentum of each wheel about its axis")
+        put(data, "wheel_momentum", ("time", "wheel"), rest[:, : len(wheels)], "N m s", "momentum of each wheel about its axis")
     if rods:
         data.coords["rod"] = [f"{bodies[b].name}.rod_{k + 1}" for k, (b, _) in enumerate(rods)]
-        _put(data, "rod_induction", ("time", "rod"), rest[:, len(wheels) :], "T", "induction of each hysteresis rod")
+        inductions = rest[:, len(wheels) : len(wheels) + len(rods)]
+        put(data, "rod_induction", ("time", "rod"), inductions, "T", "induction of each hysteresis rod")
 
 
 def _names(bodies, kind: str) -> list[str]:
@@ -147,9 +172,9 @@ def _known(data, flight, rows: int) -> None:
     """Attitude and rate as known on board, where anything is known."""
     known = flight.record.known[:rows]
     if np.isfinite(known[..., :4]).any():
-        _put(data, "q_bi_known", ("time", "body", "quaternion"), known[..., :4], "1", "attitude as known on board", "bi")
+        put(data, "q_bi_known", ("time", "body", "quaternion"), known[..., :4], "1", "attitude as known on board", "bi")
     if np.isfinite(known[..., 4:]).any():
-        _put(data, "omega_bi_b_known", ("time", "body", "axis"), known[..., 4:], "rad s-1", "rate as known on board", "b")
+        put(data, "omega_bi_b_known", ("time", "body", "axis"), known[..., 4:], "rad s-1", "rate as known on board", "b")
 
 
 def _readings(data, flight, start) -> None:
@@ -166,7 +191,7 @@ def _readings(data, flight, start) -> None:
         column = {"star_tracker": "quaternion", "sun_sensor": f"face_{body.name}"}.get(key, "axis")
         clock = f"time_{key}_{body.name}"
         data.coords[clock] = start + np.round(1e9 * mine[:, 1]).astype("timedelta64[ns]")
-        _put(data, f"{key}_{body.name}", (clock, column), mine[:, 2 : 2 + width], units, words, axes)
+        put(data, f"{key}_{body.name}", (clock, column), mine[:, 2 : 2 + width], units, words, axes)
         if key == "sun_sensor":
             data[f"sun_sensor_normal_{body.name}"] = ((column, "axis"), np.array(body.sun_sensor.normals_b))
 

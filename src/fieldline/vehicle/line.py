@@ -1,14 +1,46 @@
-"""A massless line between points of two bodies: it pulls where it is stretched, and never pushes."""
+"""A line between points of two bodies: it pulls where it is stretched, and never pushes."""
 
 from __future__ import annotations
 
-from pydantic import Field
+from typing import Annotated, Literal
 
-from fieldline.records import Record
+from pydantic import Field, model_validator
+
+from fieldline.records import Record, RecordError
 from fieldline.records.names import Name
-from fieldline.records.values import Vector
+from fieldline.records.values import Direction, Vector
+from fieldline.vehicle.reel import Reel
+from fieldline.vehicle.user_load import UserLoad
 
 ORIGIN = (0.0, 0.0, 0.0)
+MOST_NODES = 2000
+
+
+class Stretch(Record):
+    """A part of a line with properties of its own; the parts follow each other from from_body on."""
+
+    length_m: float = Field(gt=0.0, description="unstretched length of this part [m]")
+    stiffness_n: float | None = Field(default=None, gt=0.0, description="axial stiffness [N]; the line's by default")
+    damping_n_s: float | None = Field(default=None, ge=0.0, description="axial damping [N s]; the line's by default")
+    mass_per_length_kg_m: float | None = Field(default=None, gt=0.0, description="mass per length [kg/m]; the line's by default")
+    diameter_m: float | None = Field(default=None, ge=0.0, description="diameter, or width of a tape [m]; the line's by default")
+
+
+class Slider(Record):
+    """An attachment that moves along an axis of its body; a law commands its place by the group attachment."""
+
+    end: Literal["from", "to"] = Field(default="from", description="which end of the line moves")
+    axis_b: Direction = Field(description="direction of travel, axes of that body; made a unit vector")
+    travel_m: float = Field(gt=0.0, description="largest way from the middle, either side [m]")
+    speed_m_s: float = Field(gt=0.0, description="speed at which it moves [m/s]")
+    start_m: float = Field(default=0.0, description="place at the start [m]")
+
+    @model_validator(mode="after")
+    def _within(self):
+        """The start is within the travel."""
+        if abs(self.start_m) > self.travel_m:
+            raise RecordError([("start_m", f"must be within travel_m = {self.travel_m:g} m; got {self.start_m:g}")])
+        return self
 
 
 class Line(Record):
@@ -17,8 +49,56 @@ class Line(Record):
     name: Name = Field(default="", description="name in results; by default line_1, line_2, ...")
     from_body: str = Field(min_length=1, description="name of the body at one end")
     from_point_b_m: Vector = Field(default=ORIGIN, description="attachment on it, from its centre of mass, its body axes [m]")
-    to_body: str = Field(min_length=1, description="name of the body at the other end")
+    to_body: str = Field(min_length=1, description="name of the body at the other end, where a reel is, if any")
     to_point_b_m: Vector = Field(default=ORIGIN, description="attachment on it, from its centre of mass, its body axes [m]")
-    rest_length_m: float = Field(gt=0.0, description="length without tension [m]")
+    rest_length_m: float = Field(gt=0.0, description="length without tension [m]; with a reel, what is out at the start")
     stiffness_n: float = Field(gt=0.0, description="axial stiffness, Young's modulus times cross-section: tension per strain [N]")
     damping_n_s: float = Field(default=0.0, ge=0.0, description="axial damping: tension per rate of strain [N s]")
+    from_joint_damping_n_m_s: float = Field(
+        default=0.0, ge=0.0, description="angular damping where it leaves from_body: torque per rate of the angle [N m s]"
+    )
+    to_joint_damping_n_m_s: float = Field(default=0.0, ge=0.0, description="the same at to_body [N m s]")
+    nodes: int = Field(
+        default=0, ge=0, le=MOST_NODES, description="point masses along it, evenly spaced; with a reel, when all of it is out"
+    )
+    mass_per_length_kg_m: float = Field(default=0.0, ge=0.0, description="mass per unstretched length [kg/m]; 0: without mass")
+    diameter_m: float = Field(default=0.0, ge=0.0, description="diameter, or width of a tape, for air and heat [m]")
+    drag_coefficient: float = Field(default=2.2, ge=0.0, description="of the line across the flow [-]")
+    stretch: Annotated[tuple[Stretch, ...], Field(strict=False)] = Field(
+        default=(), description="parts of other materials; the line's own keys hold for what is not given and for the rest of it"
+    )
+    reel: Reel | None = Field(default=None, description="a reel on to_body that pays the line out and takes it in")
+    slider: Annotated[tuple[Slider, ...], Field(strict=False)] = Field(
+        default=(), description="attachments that move along an axis of their body"
+    )
+    load: Annotated[tuple[UserLoad, ...], Field(strict=False)] = Field(
+        default=(), description="loads of the user's own, on each node: given r_i, v_i, length from from_body, mass of the node"
+    )
+
+    @model_validator(mode="after")
+    def _holds_together(self):
+        """Nodes have mass; parts fit in the length; a reel holds what is out."""
+        found = []
+        if self.nodes > 0 and self.mass_per_length_kg_m == 0.0:
+            found.append(("mass_per_length_kg_m", "must be more than zero for a line with nodes; or leave nodes out"))
+        if self.nodes == 0 and self.load:
+            found.append(("load", "acts on nodes, and the line has none; give nodes"))
+        whole = self.whole_length_m
+        parts = sum(one.length_m for one in self.stretch)
+        if parts > whole * (1.0 + 1e-9):
+            found.append(("stretch", f"must not be longer together than the line, {whole:g} m; got {parts:g} m"))
+        if self.reel is not None and self.reel.total_length_m < self.rest_length_m:
+            found.append(
+                (
+                    "reel.total_length_m",
+                    f"must be at least what is out, rest_length_m = {self.rest_length_m:g} m; it is the whole line",
+                )
+            )
+        if found:
+            raise RecordError(found)
+        return self
+
+    @property
+    def whole_length_m(self) -> float:
+        """Unstretched length, on the reel and out [m]."""
+        return self.rest_length_m if self.reel is None else self.reel.total_length_m

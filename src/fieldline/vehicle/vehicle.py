@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from fieldline.records import Record, RecordError
 from fieldline.records.names import Name
 from fieldline.records.values import ZEROS, Dissipative, Inertia, Symmetric, Vector
+from fieldline.vehicle.conductor import Conductor
 from fieldline.vehicle.hysteresis_rod import HysteresisRod
 from fieldline.vehicle.magnetorquer import Magnetorquer
 from fieldline.vehicle.surfaces import Drag, SolarPressure
@@ -28,8 +29,9 @@ ROTATIONAL = (
     "hysteresis_rod",
     "magnetorquer",
     "wheel",
+    "conductor",
 )  # what needs a body that turns
-ACTUATORS = {"magnetorquer": "torquer", "wheel": "wheel", "thruster": "thruster"}
+ACTUATORS = {"magnetorquer": "torquer", "wheel": "wheel", "thruster": "thruster", "conductor": "conductor"}
 
 
 class Vehicle(Record):
@@ -62,6 +64,9 @@ class Vehicle(Record):
     magnetorquer: Annotated[tuple[Magnetorquer, ...], Field(strict=False)] = Field(default=(), description="magnetic torquers")
     wheel: Annotated[tuple[Wheel, ...], Field(strict=False)] = Field(default=(), description="reaction wheels")
     thruster: Annotated[tuple[Thruster, ...], Field(strict=False)] = Field(default=(), description="thrusters")
+    conductor: Annotated[tuple[Conductor, ...], Field(strict=False)] = Field(
+        default=(), description="straight conductors whose circuits close through the plasma"
+    )
     load: Annotated[tuple[UserLoad, ...], Field(strict=False)] = Field(default=(), description="loads of the user's own")
 
     @model_validator(mode="after")
@@ -89,6 +94,6 @@ class Vehicle(Record):
                 if name in names[:k]:
                     yield f"{key}[{k}].name", f'must be unique; "{name[:40]}" is the name of {key}[{names.index(name)}] too'
 
-    def names_of(self, actuator: Literal["magnetorquer", "wheel", "thruster"]) -> list[str]:
+    def names_of(self, actuator: Literal["magnetorquer", "wheel", "thruster", "conductor"]) -> list[str]:
         """Names of the actuators of a kind, the given ones or torquer_1, wheel_1, thruster_1 and on."""
         return [one.name or f"{ACTUATORS[actuator]}_{k}" for k, one in enumerate(getattr(self, actuator), start=1)]

@@ -11,8 +11,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import plant_flights as pf
+from fieldline.dynamics.load_log import LOADS as NAMES
 from fieldline.dynamics.loads.hysteresis import induction_rate
-from fieldline.dynamics.rates import LOADS as NAMES
 from plant_loads import AXES, LOADS, ROD, everything
 
 named = {"ids": lambda load: load.name}

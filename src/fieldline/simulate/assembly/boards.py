@@ -6,12 +6,12 @@ from math import ceil
 
 import numpy as np
 
-from fieldline.dynamics.parameters import Inputs, Plant, state_size, tangent_size
-from fieldline.dynamics.rates import LOADS
+from fieldline.dynamics.load_log import LOADS
+from fieldline.dynamics.parameters import Plant, state_size, tangent_size
 from fieldline.errors import InputError
 from fieldline.sensing.measurement import Measurement
 from fieldline.sensing.suite import suite
-from fieldline.simulate.assembly.plant import each, fresh, no_field
+from fieldline.simulate.assembly.plant import fresh, no_field
 from fieldline.simulate.loop import records as loop
 
 KINDS = {
@@ -21,6 +21,7 @@ KINDS = {
     "sun_sensor": loop.SUN_SENSOR,
     "star_tracker": loop.STAR_TRACKER,
 }  # in the order in which they are read
+OF_LINES = ("tension", "line_length", "line_rate")
 MOST_NUMBERS = 4e8  # of a record: 3 GB
 
 
@@ -31,11 +32,13 @@ def boards_of(scenario) -> loop.Boards:
     faces = np.array([len(b.sun_sensor.normals_b) if b.sun_sensor else 0 for b in bodies], dtype=np.int64)
     wheels = np.array([len(b.wheel) for b in bodies], dtype=np.int64)
     widths = dict.fromkeys(Measurement._fields, 3)
+    lines = np.array([sum(b.name in (line.from_body, line.to_body) for line in scenario.line) for b in bodies], dtype=np.int64)
     widths |= {"field_time_s": 1, "q_bi": 4, "valid": 6, "sun_sensor": int(faces.max()), "wheel_momentum": int(wheels.max())}
+    widths |= dict.fromkeys(OF_LINES, int(lines.max()))
     rows = {name: np.full((count, width), np.nan) for name, width in widths.items()}
-    for name in ("valid", "wheel_momentum", "dipole_b"):
+    for name in ("valid", "wheel_momentum", "dipole_b", *OF_LINES):
         rows[name][:] = 0.0
-    return loop.Boards(**rows, faces=faces, wheels=wheels)
+    return loop.Boards(**rows, faces=faces, wheels=wheels, lines=lines)
 
 
 def measurement_row(boards: loop.Boards, b: int) -> Measurement:
@@ -43,6 +46,7 @@ def measurement_row(boards: loop.Boards, b: int) -> Measurement:
     rows = {name: getattr(boards, name)[b] for name in Measurement._fields}
     rows["sun_sensor"] = rows["sun_sensor"][: boards.faces[b]]
     rows["wheel_momentum"] = rows["wheel_momentum"][: boards.wheels[b]]
+    rows |= {name: rows[name][: boards.lines[b]] for name in OF_LINES}
     for row in rows.values():
         row.flags.writeable = False  # of the view alone
     return Measurement(**rows)
@@ -75,45 +79,6 @@ def sensors_of(scenario, plant: Plant, estimated: list[bool], middle) -> loop.Se
     return loop.Sensors(suite=fresh(table), gyro_bias=table.gyros.bias.copy(), field=field)
 
 
-def actuators_of(scenario, plant: Plant) -> loop.Actuators:
-    """Torquers, wheels and thrusters with their limits and their share of what a law wants."""
-    torquers, wheels, thrusters = (each(scenario.body, kind) for kind in ("magnetorquer", "wheel", "thruster"))
-    everything = [*torquers, *wheels, *thrusters]
-    share = np.zeros((len(everything), 3))
-    for body in range(len(scenario.body)):
-        for first, group, sign in ((0, torquers, 1.0), (len(torquers), wheels, -1.0)):
-            rows = [first + k for k, (owner, _) in enumerate(group) if owner == body]
-            if rows:
-                axes = np.array([group[k - first][1].axis_b for k in rows])
-                share[rows] = sign * np.linalg.pinv(axes.T)
-    limits = [one.moment_max_a_m2 for _, one in torquers] + [one.torque_max_n_m for _, one in wheels] + [1.0] * len(thrusters)
-    quanta = [one.quantum_a_m2 for _, one in torquers] + [one.quantum_n_m for _, one in wheels] + [0.0] * len(thrusters)
-    return loop.Actuators(
-        body=np.array([b for b, _ in everything], dtype=np.int64),
-        share=share,
-        limit=np.array(limits, dtype=float),
-        quantum=np.array(quanta, dtype=float),
-        torquers=len(torquers),
-        wheels=len(wheels),
-        off=np.zeros(len(scenario.body), dtype=np.int64),
-        wanted=np.zeros(len(everything)),
-        least=np.array([one.minimum_on_time_s for _, one in thrusters], dtype=float),
-        until=np.full(len(thrusters), loop.NEVER),
-    )
-
-
-def inputs_of(plant: Plant) -> Inputs:
-    """No command yet."""
-    torquers = len(plant.torquers.body)
-    return Inputs(
-        dipole_from=np.zeros(torquers),
-        dipole_to=np.zeros(torquers),
-        dipole_since=np.zeros(torquers),
-        wheel_torque=np.zeros(len(plant.wheels.body)),
-        thrust=np.zeros(len(plant.thrusters.body)),
-    )
-
-
 def schedule_of(scenario, software, step_s: float) -> loop.Schedule:
     """Sensors, estimators, controllers, duty cycles and outputs, in the order in which they are done at one time."""
     rows = []
@@ -139,7 +104,7 @@ def schedule_of(scenario, software, step_s: float) -> loop.Schedule:
     )
 
 
-def record_of(scenario, plant: Plant, schedule: loop.Schedule, duration_s: float) -> loop.Record:
+def record_of(scenario, plant: Plant, schedule: loop.Schedule, actuators: int, duration_s: float) -> loop.Record:
     """Room for everything that the run will leave behind."""
     bodies = len(scenario.body)
     rows = int(duration_s / scenario.time.output_step_s + 1e-6) + 2
@@ -148,13 +113,14 @@ def record_of(scenario, plant: Plant, schedule: loop.Schedule, duration_s: float
         if kind in KINDS.values() and phase <= duration_s:
             samples += int((duration_s - phase) / period + 1e-6) + 2
     widest = max([4, *(len(b.sun_sensor.normals_b) for b in scenario.body if b.sun_sensor)])
-    numbers = rows * (state_size(plant) + bodies * (11 + 6 * len(LOADS))) + samples * (2 + widest)
+    lines, segments = len(plant.lines.nodes), len(plant.lines.rest)
+    row = state_size(plant) + bodies * (11 + 6 * len(LOADS)) + 2 * segments + 3 * lines
+    numbers = rows * row + samples * (2 + widest)
     if numbers > MOST_NUMBERS:
         raise InputError(
             f"the run would keep {rows} outputs and {samples} readings, {8e-9 * numbers:.1f} GB. Raise output_step_s, lower the "
             "sensors' rate_hz, or shorten the run."
         )
-    actuators = len(plant.torquers.body) + len(plant.wheels.body) + len(plant.thrusters.body)
     return loop.Record(
         seconds=np.zeros(rows),
         state=np.zeros((rows, state_size(plant))),
@@ -163,6 +129,10 @@ def record_of(scenario, plant: Plant, schedule: loop.Schedule, duration_s: float
         actuators=np.zeros((rows, actuators)),
         known=np.zeros((rows, bodies, 7)),
         loads=np.zeros((rows, len(LOADS), bodies, 6)),
+        nodes=np.zeros((rows, lines), dtype=np.int64),
+        tension=np.zeros((rows, segments)),
+        current=np.zeros((rows, segments)),
+        circuit=np.zeros((rows, lines, 2)),
         samples=np.zeros((samples, 2 + widest)),
         start=np.zeros((bodies, 4)),
         z=np.zeros(tangent_size(plant)),

@@ -32,7 +32,7 @@ class Design:
         mean_motion = float(np.sqrt(EARTH_GM_M3_S2 / axis**3))
         moments = [np.abs(one.axis_b) * one.moment_max_a_m2 for one in body.magnetorquer]
         return DesignContext(
-            inertia_kg_m2=np.reshape(as_inertia9(body.inertia_kg_m2)[0], (3, 3)),
+            inertia_kg_m2=np.eye(3) if body.kind == "point" else np.reshape(as_inertia9(body.inertia_kg_m2)[0], (3, 3)),
             mean_motion_rad_s=mean_motion,
             inclination_rad=float(np.arccos(np.clip(momentum[2] / np.linalg.norm(momentum), -1.0, 1.0))),
             period_s=period_s,

@@ -6,7 +6,8 @@ import numpy as np
 
 from fieldline.dynamics.parameters import PLAIN_LOAD
 from fieldline.simulate.assembly.host import Host, Slots, compiled, function_of, is_compiled
-from fieldline.simulate.assembly.plant import each
+from fieldline.simulate.assembly.lines import line_names
+from fieldline.simulate.assembly.plant import loads_of
 from fieldline.simulate.loop import records as loop
 from fieldline.simulate.loop.functions import LOAD, no_load
 from fieldline.simulate.loop.records import PLAIN_EVENT
@@ -25,8 +26,9 @@ class UserFunctions:
         self._host = host
         self._plain: list[tuple[object, np.ndarray]] = []
         self.loads, self.load_names = [], []
-        for b, one in each(scenario.body, "load"):
-            where = f'load "{one.function}" of body "{scenario.body[b].name}"'
+        owners = [f'body "{body.name}"' for body in scenario.body] + [f'line "{name}"' for name in line_names(scenario)]
+        for owner, one in loads_of(scenario):
+            where = f'load "{one.function}" of {owners[owner]}'
             number = PLAIN_LOAD + len(self.loads)
             self.loads.append(self._number(one, scenario, where, number))
             self.load_names.append(where)

@@ -11,7 +11,7 @@ import numpy as np
 from fieldline.dynamics.parameters import (
     PLAIN_LOAD,
     Bodies,
-    Lines,
+    Conductors,
     Plant,
     Rods,
     Surroundings,
@@ -26,6 +26,7 @@ from fieldline.environment.field_record import FieldParams
 from fieldline.environment.field_registry import field_model
 from fieldline.environment.gravity import gravity_model
 from fieldline.mechanics.rigid_body import as_inertia9
+from fieldline.simulate.assembly.lines import lines_of, sliders_of
 from fieldline.simulate.scenario.states import earth_orientation
 
 
@@ -40,8 +41,10 @@ def plant_of(scenario, duration_s: float, load_slots=()) -> Plant:
         wheels=_wheels(bodies),
         thrusters=_thrusters(bodies),
         rods=_rods(bodies),
-        lines=_lines(scenario),
-        user=_user_loads(bodies, load_slots),
+        conductors=_conductors(bodies),
+        lines=lines_of(scenario),
+        sliders=sliders_of(scenario),
+        user=_user_loads(scenario, load_slots),
         magnetic=any(map(is_magnetic, bodies)),
     )
 
@@ -102,7 +105,7 @@ def is_magnetic(body) -> bool:
     if body.kind == "point":
         return False
     linear = any(np.any(getattr(body, key)) for key in ("residual_dipole_a_m2", "induced_dipole_a_m2_tesla"))
-    return bool(linear or np.any(body.eddy_damping_n_m_s_tesla2) or body.magnetorquer or body.hysteresis_rod)
+    return bool(linear or np.any(body.eddy_damping_n_m_s_tesla2) or body.magnetorquer or body.hysteresis_rod or body.conductor)
 
 
 def tensor9(value) -> np.ndarray:
@@ -144,9 +147,9 @@ def _rows(values, width: int) -> np.ndarray:
     return np.array([np.ravel(v) for v in values], dtype=float).reshape(-1, width)
 
 
-def each(bodies, key: str) -> list[tuple[int, object]]:
-    """(body's index, record) of every actuator or rod of a kind, body after body."""
-    return [(b, one) for b, body in enumerate(bodies) for one in getattr(body, key)]
+def each(owners, key: str) -> list[tuple[int, object]]:
+    """(owner's index, record) of every actuator, rod or load of a kind, body after body or line after line."""
+    return [(b, one) for b, owner in enumerate(owners) for one in getattr(owner, key)]
 
 
 def _owners(pairs) -> np.ndarray:
@@ -191,22 +194,21 @@ def _rods(bodies) -> Rods:
     )
 
 
-def _lines(scenario) -> Lines:
-    """Lines between bodies."""
-    lines = scenario.line
-    ends = [(scenario.index_of(line.from_body), scenario.index_of(line.to_body)) for line in lines]
-    return Lines(
-        np.array(ends, dtype=np.int64).reshape(-1, 2),
-        _rows([(*line.from_point_b_m, *line.to_point_b_m) for line in lines], 6),
-        _floats(line.rest_length_m for line in lines),
-        _floats(line.stiffness_n for line in lines),
-        _floats(line.damping_n_s for line in lines),
-    )
+def _conductors(bodies) -> Conductors:
+    """Conductors of all bodies."""
+    pairs = each(bodies, "conductor")
+    wire = [one.length_m * np.array(one.direction_b) for _, one in pairs]
+    return Conductors(_owners(pairs), _rows([one.position_b_m for _, one in pairs], 3), _rows(wire, 3))
 
 
-def _user_loads(bodies, slots) -> UserLoads:
+def loads_of(scenario) -> list[tuple[int, object]]:
+    """(body, or the number of bodies plus line; record) of every load of the user's own."""
+    return [*each(scenario.body, "load"), *((len(scenario.body) + k, one) for k, one in each(scenario.line, "load"))]
+
+
+def _user_loads(scenario, slots) -> UserLoads:
     """The user's loads with their slots."""
-    pairs = each(bodies, "load")
+    pairs = loads_of(scenario)
     parameters = [list(one.parameters.values()) for _, one in pairs]
     first = np.concatenate([[0], np.cumsum([len(p) for p in parameters], dtype=np.int64)]).astype(np.int64)
     numbers = slots if len(slots) == len(pairs) else [PLAIN_LOAD + k for k in range(len(pairs))]

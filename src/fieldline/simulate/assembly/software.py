@@ -8,6 +8,7 @@ import numpy as np
 
 from fieldline.control import LAWS
 from fieldline.errors import InputError
+from fieldline.simulate.assembly.actuators import KINDS
 from fieldline.simulate.assembly.boards import depth_of, measurement_row
 from fieldline.simulate.assembly.host import Host, Slots, compiled, function_of
 from fieldline.simulate.estimators import ESTIMATORS
@@ -15,7 +16,6 @@ from fieldline.simulate.loop import records as loop
 from fieldline.simulate.loop.flight_software import KNOWLEDGE
 from fieldline.simulate.loop.functions import LAW, no_law
 
-GROUPS = ("dipole", "wheel_torque", "thrust")
 USUAL_MEMORY = 64  # numbers, where a law of the user's own does not say
 
 
@@ -96,10 +96,12 @@ def _users_parameters(table: dict, where: str) -> np.ndarray:
     return np.array(flat, dtype=float)
 
 
-def tasks_of(scenario, software: list[Task], actuators: loop.Actuators) -> loop.Tasks:
+def tasks_of(software: list[Task], actuators: loop.Actuators) -> loop.Tasks:
     """The tasks as the loop takes them; `slot` is filled by `place`."""
     records = [task.record for task in software]
-    groups = np.array([[int(g in task.commands) for g in GROUPS] for task in software], dtype=np.int64).reshape(-1, 3)
+    groups = np.array([[int(kind in task.commands) for kind in KINDS] for task in software], dtype=np.int64).reshape(
+        -1, len(KINDS)
+    )
     depth, count = depth_of(records), len(actuators.body)
     return loop.Tasks(
         body=np.array([task.body for task in software], dtype=np.int64),
@@ -107,7 +109,7 @@ def tasks_of(scenario, software: list[Task], actuators: loop.Actuators) -> loop.
         reference=np.array([task.reference for task in software], dtype=np.int64),
         estimator=np.array([record.role == "estimator" for record in records], dtype=np.int64),
         groups=groups,
-        replies=np.array([replies_of(scenario, task) for task in software], dtype=np.int64),
+        replies=np.array([replies_of(task, actuators) for task in software], dtype=np.int64),
         period=np.array([1.0 / record.rate_hz for record in records]),
         delay=np.array([record.delay_s for record in records]),
         pending=np.full((len(software), depth), loop.NEVER),
@@ -116,12 +118,16 @@ def tasks_of(scenario, software: list[Task], actuators: loop.Actuators) -> loop.
     )
 
 
-def replies_of(scenario, task: Task) -> int:
+def replies_of(task: Task, actuators: loop.Actuators) -> int:
     """Numbers that a task must return."""
     if task.record.role == "estimator":
         return KNOWLEDGE
-    widths = {"dipole": 3, "wheel_torque": 3, "thrust": len(scenario.body[task.body].thruster)}
-    return sum(widths[group] for group in task.commands)
+    first, total = 0, 0
+    for kind, last in zip(KINDS, actuators.ends, strict=True):
+        if kind in task.commands:
+            total += 3 if kind in ("dipole", "wheel_torque") else int(np.sum(actuators.body[first:last] == task.body))
+        first = last
+    return total
 
 
 def place(software: list[Task], tasks: loop.Tasks, boards: loop.Boards, host: Host):

@@ -1,4 +1,4 @@
-"""The state y of the plant at the start: orbits, attitudes and rates of the bodies, wheels and rods."""
+"""The state y of the plant at the start: orbits, attitudes and rates of the bodies, wheels, rods and lines."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from fieldline.dynamics.parameters import STATE, Plant, state_size
 from fieldline.dynamics.rates import field_at
 from fieldline.environment.ephemeris import dcm_ei_kernel
 from fieldline.frames.attitude import to_body
+from fieldline.simulate.assembly.line_start import start_lines
 from fieldline.simulate.assembly.plant import each
 from fieldline.simulate.scenario.attitudes import start_attitude
 from fieldline.simulate.scenario.states import start_states
@@ -33,13 +34,14 @@ def start_of(scenario, plant: Plant, seed: int) -> np.ndarray:
     for k, (_, one) in enumerate(each(scenario.body, "wheel")):
         y[base + k] = one.momentum_n_m_s
     _rods(scenario, plant, y)
+    start_lines(scenario, plant, y)
     return y
 
 
 def _rods(scenario, plant: Plant, y: np.ndarray) -> None:
-    """Inductions of the rods at the end of y."""
+    """Inductions of the rods."""
     pairs = each(scenario.body, "hysteresis_rod")
-    base = len(y) - len(pairs)
+    base = STATE * len(scenario.body) + len(plant.wheels.body)
     dcm_ei = dcm_ei_kernel(0.0, plant.surroundings.ephemeris)
     for k, (b, one) in enumerate(pairs):
         row = y[STATE * b : STATE * (b + 1)]

@@ -38,7 +38,7 @@ def _common(flight):
 def _body(flight) -> bool:
     """One rigid body without air, light, wheels, jets, rods, lines or loads of the user."""
     plant, bodies = flight.plant, flight.plant.bodies
-    others = (plant.wheels.body, plant.thrusters.body, plant.rods.body, plant.lines.length, plant.user.body)
+    others = (plant.wheels.body, plant.thrusters.body, plant.rods.body, plant.lines.nodes, plant.user.body)
     absent = (bodies.induced, bodies.eddy, bodies.drag, bodies.solar, bodies.torque_b, bodies.torque_i)
     one = len(bodies.mass) == 1 and bodies.rigid[0] == 1 and plant.magnetic
     return one and not any(len(part) for part in others) and not any(np.any(part) for part in absent)

@@ -5,7 +5,8 @@
 w: the wanted dipole of a body's torquers, or the wanted torque of its wheels on it; P: the pseudo-inverse of their axes,
 so the command is the least one that gives w where the axes span it. A wheel gives the body the opposite of what its
 motor gives the wheel: the sign is in P. A thruster told 0 to 1 fires at full thrust for that part of the law's period,
-not at all where that is less than its shortest firing. Under a constant torque a wheel's momentum is linear in time, so the
+not at all where that is less than its shortest firing. Conductors, circuits, reels and sliding attachments are told what
+to do one by one. Under a constant torque a wheel's momentum is linear in time, so the
 time at which it is full is known beforehand, and its motor rests from then until it is told to go back.
 """
 
@@ -14,16 +15,17 @@ from __future__ import annotations
 from math import exp
 
 from fieldline.compiled import inner
+from fieldline.dynamics.lines.chain import slide
 from fieldline.dynamics.parameters import STATE
-from fieldline.simulate.loop.records import NEVER, SAME_TIME_S
+from fieldline.simulate.loop.records import CIRCUIT, CONDUCTOR, DIPOLE, NEVER, REEL, SAME_TIME_S, THRUST, WHEEL
 
 
 @inner
-def limited(wanted, limit, quantum):
+def limited(wanted, lower, limit, quantum):
     """One actuator's command; equation (1)."""
     if quantum > 0.0:
         wanted = quantum * round(wanted / quantum)
-    return min(max(wanted, -limit), limit)
+    return min(max(wanted, lower), limit)
 
 
 @inner
@@ -32,26 +34,22 @@ def allocate(reply, count, task, tasks, actuators, out):
     body = tasks.body[task]
     at = 0
     first = 0
-    for group in range(3):
-        last = actuators.torquers if group == 0 else first + actuators.wheels
-        if group == 2:
-            last = actuators.body.shape[0]
-        wanted = tasks.groups[task, group] != 0
-        column = at
-        for k in range(first, last):
-            if not wanted or actuators.body[k] != body:
-                continue
-            if group == 2:
-                value = reply[column] if column < count else 0.0
-                out[k] = min(max(value, 0.0), 1.0)
-                column += 1
-            else:
-                value = 0.0
-                for j in range(3):
-                    value += actuators.share[k, j] * reply[at + j]
-                out[k] = limited(value, actuators.limit[k], actuators.quantum[k])
-        if wanted:
-            at = column if group == 2 else at + 3
+    for kind in range(actuators.ends.shape[0]):
+        last = actuators.ends[kind]
+        if tasks.groups[task, kind] != 0:
+            column = at
+            for k in range(first, last):
+                if actuators.body[k] != body:
+                    continue
+                if kind <= WHEEL:
+                    value = 0.0
+                    for j in range(3):
+                        value += actuators.share[k, j] * reply[at + j]
+                else:
+                    value = reply[column] if column < count else 0.0
+                    column += 1
+                out[k] = limited(value, actuators.lower[k], actuators.limit[k], actuators.quantum[k])
+            at = at + 3 if kind <= WHEEL else column
         first = last
     return at
 
@@ -84,25 +82,35 @@ def next_command(tasks):
 def drive(t, k, value, period, run):
     """Let actuator k do `value` from t on; a thruster for that part of `period`."""
     inputs, actuators = run.inputs, run.actuators
-    if k < actuators.torquers:
-        lag = run.plant.torquers.lag[k]
-        now = inputs.dipole_to[k]
+    row = actuators.target[k]
+    if k < actuators.ends[DIPOLE]:
+        lag = run.plant.torquers.lag[row]
+        now = inputs.dipole_to[row]
         if lag > 0.0:
-            now += (inputs.dipole_from[k] - now) * exp(-(t - inputs.dipole_since[k]) / lag)
-        inputs.dipole_from[k] = now
-        inputs.dipole_to[k] = value
-        inputs.dipole_since[k] = t
-    elif k < actuators.torquers + actuators.wheels:
-        inputs.wheel_torque[k - actuators.torquers] = value
-    else:
-        thruster = k - actuators.torquers - actuators.wheels
+            now += (inputs.dipole_from[row] - now) * exp(-(t - inputs.dipole_since[row]) / lag)
+        inputs.dipole_from[row] = now
+        inputs.dipole_to[row] = value
+        inputs.dipole_since[row] = t
+    elif k < actuators.ends[WHEEL]:
+        inputs.wheel_torque[row] = value
+    elif k < actuators.ends[THRUST]:
         firing = value * period
-        if firing <= 0.0 or firing < actuators.least[thruster]:
-            inputs.thrust[thruster] = 0.0
-            actuators.until[thruster] = NEVER
+        if firing <= 0.0 or firing < actuators.least[row]:
+            inputs.thrust[row] = 0.0
+            actuators.until[row] = NEVER
         else:
-            inputs.thrust[thruster] = 1.0
-            actuators.until[thruster] = t + firing
+            inputs.thrust[row] = 1.0
+            actuators.until[row] = t + firing
+    elif k < actuators.ends[CONDUCTOR]:
+        inputs.current[row] = value
+    elif k < actuators.ends[CIRCUIT]:
+        inputs.circuit[row] = value
+    elif k < actuators.ends[REEL]:
+        inputs.reel[row] = value
+    else:
+        inputs.slide_from[row] = slide(t, row, run.plant.sliders, inputs)[0]
+        inputs.slide_to[row] = value
+        inputs.slide_since[row] = t
 
 
 @inner
@@ -165,7 +173,7 @@ def obey(t, run):
                 if value >= NEVER:
                     continue
                 actuators.wanted[k] = value
-                if not (k < actuators.torquers and actuators.off[actuators.body[k]] != 0):
+                if not (k < actuators.ends[DIPOLE] and actuators.off[actuators.body[k]] != 0):
                     drive(t, k, value, tasks.period[i], run)
     rest_full_wheels(run)
 
@@ -175,6 +183,6 @@ def switch_torquers(t, body, off, run):
     """Duty cycle: let the torquers of a body rest, or do what was wanted last."""
     actuators = run.actuators
     actuators.off[body] = 1 if off else 0
-    for k in range(actuators.torquers):
+    for k in range(actuators.ends[DIPOLE]):
         if actuators.body[k] == body:
             drive(t, k, 0.0 if off else actuators.wanted[k], 0.0, run)

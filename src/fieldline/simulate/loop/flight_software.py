@@ -9,14 +9,16 @@ from __future__ import annotations
 from math import nan
 
 from fieldline.compiled import counting, inner, merged
+from fieldline.dynamics.layout import three
+from fieldline.dynamics.lines.readings import end_tension, length_out
 from fieldline.dynamics.parameters import STATE
-from fieldline.dynamics.rates import LAW_AT_WORK, three
+from fieldline.dynamics.rates import LAW_AT_WORK
 from fieldline.environment.ephemeris import dcm_ei_kernel
 from fieldline.environment.field import field_kernel
 from fieldline.frames.matrices import matvec, transpose
 from fieldline.sensing.measurement import ATTITUDE, ORBIT, RATE, Measurement
 from fieldline.simulate.loop.commands import allocate, send
-from fieldline.simulate.loop.records import NEVER, Outcome
+from fieldline.simulate.loop.records import DIPOLE, NEVER, Outcome
 
 LAW_RAISED, LAW_SHAPE, LAW_NOT_FINITE = int(Outcome.LAW_RAISED), int(Outcome.LAW_SHAPE), int(Outcome.LAW_NOT_FINITE)
 LAW_NOT_UNIT = int(Outcome.LAW_NOT_UNIT)
@@ -30,6 +32,7 @@ def measurement_of(boards, b):
     """Row b as what a law sees: views, not copies."""
     sun = boards.sun_sensor[b]
     wheels = boards.wheel_momentum[b]
+    tension, length, rate = boards.tension[b], boards.line_length[b], boards.line_rate[b]
     return Measurement(
         boards.field_b[b],
         boards.field_time_s[b],
@@ -43,7 +46,24 @@ def measurement_of(boards, b):
         wheels[: boards.wheels[b]],
         boards.dipole_b[b],
         boards.valid[b],
+        tension[: boards.lines[b]],
+        length[: boards.lines[b]],
+        rate[: boards.lines[b]],
     )
+
+
+@inner
+def read_lines(t, b, run):
+    """Tension at the body's end [N], unstretched length out [m] and its rate [m/s] of each line that is attached."""
+    lines, boards, at = run.plant.lines, run.boards, 0
+    for k in range(lines.nodes.shape[0]):
+        for end in range(2):
+            if lines.body[k, end] == b:
+                length, rate = length_out(k, run.y, run.plant)
+                boards.tension[b, at] = end_tension(t, k, end, run.y, run.plant, run.inputs)
+                boards.line_length[b, at] = length
+                boards.line_rate[b, at] = rate
+                at += 1
 
 
 @merged
@@ -51,7 +71,7 @@ def refresh(t, b, reference, run):
     """What is known at any time: commands in effect, orbit where no receiver reads it, wheels' speeds, reference field."""
     y, plant, sensors, boards, actuators = run.y, run.plant, run.sensors, run.boards, run.actuators
     boards.dipole_b[b] = 0.0
-    for k in range(actuators.torquers):
+    for k in range(actuators.ends[DIPOLE]):
         if actuators.body[k] == b:
             for j in range(3):
                 boards.dipole_b[b, j] += actuators.wanted[k] * plant.torquers.axis[k, j]
@@ -66,6 +86,8 @@ def refresh(t, b, reference, run):
         if plant.wheels.body[k] == b:
             boards.wheel_momentum[b, at] = y[base + k]
             at += 1
+    if plant.lines.nodes.shape[0] > 0:
+        read_lines(t, b, run)
     if reference and boards.valid[b, ORBIT] != 0.0:
         dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
         place = (boards.position_i[b, 0], boards.position_i[b, 1], boards.position_i[b, 2])

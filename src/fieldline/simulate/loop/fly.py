@@ -15,9 +15,11 @@ from math import ceil
 
 from fieldline.compiled import inner, kernel, merged
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M
+from fieldline.dynamics.layout import nodes_at, three
+from fieldline.dynamics.lines.chain import slide
 from fieldline.dynamics.loads.magnetic import torquer_moment
 from fieldline.dynamics.parameters import STATE
-from fieldline.dynamics.rates import FINITE, NOT_FINITE, RAISED, field_at, plant_rates, three
+from fieldline.dynamics.rates import FINITE, NOT_FINITE, RAISED, field_at, plant_rates
 from fieldline.dynamics.step import attempt, lift, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
@@ -25,7 +27,20 @@ from fieldline.frames.vectors import norm, put
 from fieldline.integrate.steps import error_norm, error_scale, next_step
 from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, next_filling, obey, switch_torquers
 from fieldline.simulate.loop.flight_software import run_task
-from fieldline.simulate.loop.records import OUTPUT, SAME_TIME_S, TASK, TORQUE_OFF, TORQUE_ON, Outcome
+from fieldline.simulate.loop.records import (
+    CIRCUIT,
+    CONDUCTOR,
+    DIPOLE,
+    OUTPUT,
+    REEL,
+    SAME_TIME_S,
+    TASK,
+    THRUST,
+    TORQUE_OFF,
+    TORQUE_ON,
+    WHEEL,
+    Outcome,
+)
 from fieldline.simulate.loop.sampling import sample
 from fieldline.simulate.loop.watching import GOES_ON, height_of, interpolant, quantity, watch, within
 
@@ -58,6 +73,41 @@ def next_time(t, run):
 
 
 @inner
+def write_actuators(t, row, run):
+    """What every actuator does, into a row of the record."""
+    plant, inputs, ends, target = run.plant, run.inputs, run.actuators.ends, run.actuators.target
+    for k in range(row.shape[0]):
+        one = target[k]
+        if k < ends[DIPOLE]:
+            row[k] = torquer_moment(t, one, plant.torquers, inputs)
+        elif k < ends[WHEEL]:
+            row[k] = inputs.wheel_torque[one]
+        elif k < ends[THRUST]:
+            row[k] = inputs.thrust[one]
+        elif k < ends[CONDUCTOR]:
+            row[k] = inputs.current[one]
+        elif k < ends[CIRCUIT]:
+            row[k] = inputs.circuit[one]
+        elif k < ends[REEL]:
+            row[k] = inputs.reel[one]
+        else:
+            row[k] = slide(t, one, plant.sliders, inputs)[0]
+
+
+@inner
+def write_lines(row, run):
+    """What the lines' last evaluation found, into a row of the record."""
+    record, shared = run.record, run.shared
+    for k in range(record.nodes.shape[1]):
+        record.nodes[row, k] = run.plant.lines.nodes[k]
+        record.circuit[row, k, 0] = shared.ambient.emf[k]
+        record.circuit[row, k, 1] = shared.ambient.power[k]
+    for s in range(record.tension.shape[1]):
+        record.tension[row, s] = shared.tension[s]
+        record.current[row, s] = shared.ambient.current[s]
+
+
+@inner
 def write_row(t, y, run, loads, call):
     """Keep the state and what goes with it."""
     plant, inputs, boards, record, clock = run.plant, run.inputs, run.boards, run.record, run.clock
@@ -79,17 +129,12 @@ def write_row(t, y, run, loads, call):
             record.known[row, b, j] = boards.q_bi[b, j]
         for j in range(3):
             record.known[row, b, 4 + j] = boards.omega_bi_b[b, j]
-    torquers, wheels = plant.torquers.body.shape[0], plant.wheels.body.shape[0]
-    for k in range(torquers):
-        record.actuators[row, k] = torquer_moment(t, k, plant.torquers, inputs)
-    for k in range(wheels):
-        record.actuators[row, torquers + k] = inputs.wheel_torque[k]
-    for k in range(plant.thrusters.body.shape[0]):
-        record.actuators[row, torquers + wheels + k] = inputs.thrust[k]
+    write_actuators(t, record.actuators[row], run)
     if record.loads.shape[0] > 0:
         lift(y, record.start, record.z)
         log = record.loads[row]
         plant_rates(t, record.z, record.start, plant, inputs, run.record.unfrozen, loads, call, run.shared, log, record.rate)
+        write_lines(row, run)
 
 
 @merged
@@ -140,8 +185,20 @@ def sound(t, y, plant, stepping):
     for b in range(plant.bodies.mass.shape[0]):
         if norm(three(y, STATE * b)) > SAFE_RADIUS_M:
             continue
-        if height_of(t, b, y, plant) < stepping.floor:
+        if height_of(t, three(y, STATE * b), plant) < stepping.floor:
             return GROUND
+    return grounded_node(t, y, plant, stepping.floor)
+
+
+@inner
+def grounded_node(t, y, plant, floor):
+    """GROUND where a node that is out is below the floor, else 0."""
+    at = nodes_at(plant) + plant.bodies.mass.shape[0]
+    for k in range(plant.lines.nodes.shape[0]):
+        for j in range(plant.lines.nodes[k]):
+            r = three(y, at + 6 * (plant.lines.first[k] + j))
+            if norm(r) <= SAFE_RADIUS_M and height_of(t, r, plant) < floor:
+                return GROUND
     return 0
 
 

@@ -23,6 +23,8 @@ SAME_TIME_S = 1e-7  # what is due within this is due now: 0.1 s three times is n
 # what a row of the schedule does; at one time they are done in the order of the rows
 MAGNETOMETER, GYRO, SUN_SENSOR, STAR_TRACKER, NAVIGATION, TASK, TORQUE_OFF, TORQUE_ON, OUTPUT = range(9)
 ECLIPSE, ALTITUDE, RATE, USER_EVENT = range(4)  # kinds of events
+# kinds of actuators, in the order of the axis of actuators
+DIPOLE, WHEEL, THRUST, CONDUCTOR, CIRCUIT, REEL, SLIDER = range(7)
 PLAIN_EVENT = 1000  # numbers by which `call` tells a plain Python event from a task or a load
 
 
@@ -91,8 +93,12 @@ class Boards(NamedTuple):
     wheel_momentum: np.ndarray
     dipole_b: np.ndarray
     valid: np.ndarray
+    tension: np.ndarray
+    line_length: np.ndarray
+    line_rate: np.ndarray
     faces: np.ndarray  # (bodies,) int64, how many of the columns of sun_sensor are this body's
     wheels: np.ndarray  # (bodies,) int64
+    lines: np.ndarray  # (bodies,) int64, how many lines are attached
 
 
 class Tasks(NamedTuple):
@@ -102,7 +108,7 @@ class Tasks(NamedTuple):
     slot: np.ndarray  # (n,) int64: a compiled law's place, or -1: plain Python
     reference: np.ndarray  # (n,) int64: whether it is given the reference field
     estimator: np.ndarray  # (n,) int64: 0 for a controller, 1 for an estimator, 2 for one whose last call had an answer
-    groups: np.ndarray  # (n, 3) int64: whether it commands dipole, wheel torque, thrust
+    groups: np.ndarray  # (n, 7) int64: whether it commands each kind of actuator
     replies: np.ndarray  # (n,) int64: how many numbers it must return
     period: np.ndarray  # (n,) [s]
     delay: np.ndarray  # (n,) [s]
@@ -112,14 +118,15 @@ class Tasks(NamedTuple):
 
 
 class Actuators(NamedTuple):
-    """Limits and allocation of torquers, wheels and thrusters, in this order along an axis of actuators."""
+    """Limits and allocation of all actuators, kind after kind along an axis of actuators."""
 
-    body: np.ndarray  # (n,) int64
+    body: np.ndarray  # (n,) int64, whose flight software commands it
+    ends: np.ndarray  # (7,) int64: where each kind ends on the axis
+    target: np.ndarray  # (n,) int64: the row of its kind that it moves
     share: np.ndarray  # (n, 3): a torquer's share of a wanted dipole, a wheel's of a wanted torque on the body
+    lower: np.ndarray  # (n,)
     limit: np.ndarray  # (n,)
     quantum: np.ndarray  # (n,) 0: none
-    torquers: int
-    wheels: int
     off: np.ndarray  # (bodies,) int64: the duty cycle has the torquers off
     wanted: np.ndarray  # (n,) command in effect, as if the duty cycle were not
     least: np.ndarray  # (thrusters,) [s] shortest firing
@@ -151,6 +158,10 @@ class Record(NamedTuple):
     actuators: np.ndarray  # (rows, n) in effect
     known: np.ndarray  # (rows, bodies, 7) q_bi and rate as known on board
     loads: np.ndarray  # (rows or 0, loads, bodies, 6)
+    nodes: np.ndarray  # (rows, lines) int64 nodes that are out
+    tension: np.ndarray  # (rows, segments) [N]
+    current: np.ndarray  # (rows, segments) [A]
+    circuit: np.ndarray  # (rows, lines, 2) electromotive force [V] and power delivered [W]
     samples: np.ndarray  # (samples, 2 + widest): row of the schedule, time, readings
     start: np.ndarray  # (bodies, 4), z and rate (n,): scratch of the log of loads
     z: np.ndarray

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from fieldline.compiled import inner, merged
+from fieldline.dynamics.layout import three
 from fieldline.dynamics.loads.magnetic import commanded_dipole
 from fieldline.dynamics.parameters import STATE
-from fieldline.dynamics.rates import field_at, three
+from fieldline.dynamics.rates import field_at
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
 from fieldline.frames.attitude import to_body

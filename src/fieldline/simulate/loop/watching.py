@@ -11,8 +11,9 @@ from __future__ import annotations
 from math import nan
 
 from fieldline.compiled import inner
+from fieldline.dynamics.layout import three
 from fieldline.dynamics.parameters import PLAIN_LOAD, STATE
-from fieldline.dynamics.rates import EVENT_AT_WORK, FINITE, ask, plant_rates, three
+from fieldline.dynamics.rates import EVENT_AT_WORK, FINITE, ask, plant_rates
 from fieldline.dynamics.step import closing_rates, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
@@ -29,10 +30,10 @@ GOES_ON, FAILED = 2.0, -1.0  # in place of the fraction of a step at which a run
 
 
 @inner
-def height_of(t, b, y, plant):
-    """Height over the ellipsoid [m]."""
+def height_of(t, r_i, plant):
+    """Height [m] of a place over the ellipsoid."""
     dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
-    return geodetic_kernel(matvec(dcm_ei, three(y, STATE * b)))[2]
+    return geodetic_kernel(matvec(dcm_ei, r_i))[2]
 
 
 @inner
@@ -44,7 +45,7 @@ def quantity(t, k, y, run, loads, call):
     if events.kind[k] == ECLIPSE:
         return sunlit_kernel(three(y, STATE * b), sun_kernel(t, plant.surroundings.ephemeris)) - 0.5
     if events.kind[k] == ALTITUDE:
-        return height_of(t, b, y, plant) - events.level[k]
+        return height_of(t, three(y, STATE * b), plant) - events.level[k]
     if events.kind[k] == RATE:
         return norm(three(y, STATE * b + 10)) - events.level[k]
     for j in range(STATE):

@@ -67,6 +67,15 @@ def _lines(scenario) -> Found:
         yield from _body_named(scenario, f"line[{k}].to_body", line.to_body)
         if line.from_body == line.to_body:
             yield f"line[{k}].to_body", "must be another body than from_body"
+        known = {body.name: body for body in scenario.body}
+        for j, one in enumerate(line.slider):
+            body = known.get(getattr(line, f"{one.end}_body"))
+            if body is not None and body.kind == "point":
+                yield f"line[{k}].slider[{j}].end", f'is on "{body.name}", a point mass, which has no axes'
+        for end in ("from", "to"):
+            body = known.get(getattr(line, f"{end}_body"))
+            if body is not None and body.kind == "point" and any(getattr(line, f"{end}_point_b_m")):
+                yield f"line[{k}].{end}_point_b_m", f'is off "{body.name}", a point mass, which does not turn; leave it out'
 
 
 def _software(scenario) -> Found:
@@ -79,17 +88,36 @@ def _software(scenario) -> Found:
             yield f"{path}.body", f"is missing: which of {', '.join(one.name for one in scenario.body)[:80]}?"
         elif not unknown:
             body = scenario.body[scenario.index_of(task.body)]
-            if body.kind == "point":
+            if body.kind == "point" and not reeled(scenario, body):
                 yield f"{path}.body", f'names "{body.name}", a point mass, which has nothing to command'
             else:
-                yield from actuators_missing(f"{path}.commands", task.commands, body)
+                yield from actuators_missing(f"{path}.commands", task.commands, scenario, body)
 
 
-def actuators_missing(path: str, commands: Iterable[str], body) -> Found:
+def reeled(scenario, body) -> list:
+    """Lines that a body's flight software commands at their end: those with a reel or a circuit."""
+    return [line for line in scenario.line if line.to_body == body.name and line.reel is not None]
+
+
+def sliding(scenario, body) -> list:
+    """Sliders of the attachments on a body."""
+    ends = [(line, one) for line in scenario.line for one in line.slider]
+    return [one for line, one in ends if getattr(line, f"{one.end}_body") == body.name]
+
+
+def actuators_missing(path: str, commands: Iterable[str], scenario, body) -> Found:
     """Commands for which the body has no actuator."""
     for command in commands:
-        if not getattr(body, NEEDS[command]):
-            yield path, f'has "{command}", but body "{body.name}" has no [[body.{NEEDS[command]}]]'
+        if command == "current":
+            there, what = body.conductor, "[[body.conductor]], and no [line.circuit] is at its end of a line"
+        elif command == "reel":
+            there, what = reeled(scenario, body), "[line.reel] on a line with that to_body"
+        elif command == "attachment":
+            there, what = sliding(scenario, body), "[[line.slider]] at its end of a line"
+        else:
+            there, what = getattr(body, NEEDS[command]), f"[[body.{NEEDS[command]}]]"
+        if not there:
+            yield path, f'has "{command}", but body "{body.name}" has no {what}'
 
 
 def _events(scenario) -> Found:

@@ -117,7 +117,7 @@ class Scenario(Record):
         named = [one.tle for one in orbits if one is not None and one.tle is not None]
         named += [self.environment.earth_orientation or ""]
         functions = [one.law for one in self.software] + [one.function or "" for one in self.event]
-        functions += [one.function for body in self.body for one in body.load]
+        functions += [one.function for owner in (*self.body, *self.line) for one in owner.load]
         named += [name.rpartition(":")[0] for name in functions if ".py:" in name]
         return sorted({name.strip() for name in named if name.strip() and "\n" not in name.strip()})
 

@@ -11,8 +11,8 @@ from fieldline.records.names import Name
 from fieldline.records.words import came
 from fieldline.vehicle.user_load import is_function_name
 
-Command = Literal["dipole", "wheel_torque", "thrust"]
-ORDER = ("dipole", "wheel_torque", "thrust")
+Command = Literal["dipole", "wheel_torque", "thrust", "current", "reel", "attachment"]
+ORDER = ("dipole", "wheel_torque", "thrust", "current", "reel", "attachment")
 
 
 def _plain(value: Any) -> bool:
@@ -48,7 +48,7 @@ class Software(Record):
         description="the law's own parameters by name; for a law of your own: numbers, handed over as an array in this order",
     )
     commands: Annotated[tuple[Command, ...], Field(strict=False)] = Field(
-        default=(), description="for a law of the user's own: what it returns, in the order dipole, wheel_torque, thrust"
+        default=(), description=f"for a law of the user's own: what it returns, in the order {', '.join(ORDER)}"
     )
     memory: int | None = Field(
         default=None, ge=0, le=1_000_000, description="for a law of the user's own: numbers that it keeps between calls"

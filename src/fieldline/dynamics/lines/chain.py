@@ -1,0 +1,209 @@
+"""A line of nodes between two bodies: rates of its nodes and its feed, and what it does to the bodies at its ends.
+
+Segment j of line k joins the points j and j + 1 (A's attachment, the nodes, B's attachment) and pulls them together,
+
+    T_j = max(0, E A (l - l0) / l0 + c d(strain)/dt) where l > l0, else 0                                  (1)
+    m_j dv_j/dt = T_j e_j - T_(j-1) e_(j-1) + m_j g(r_j) + F_j,    m_j = (mu l0)_(j-1)/2 + (mu l0)_j/2     (2)
+
+e_j from point j to j + 1, l0 the unstretched length, F_j half of the loads on either segment (air, current) and the
+user's. Bending stiffness is neglected: a line of 2 mm at 20 km bends over millimetres. The half segments at the ends are
+point masses fixed in the bodies there; `EndMass` of a body gathers them,
+
+    M a + alpha x S = F - omega x (omega x S),    (I + J) alpha + S x a = N - omega x ((I + J) omega)        (3)
+    S = sum m p,    J = sum m (p^2 E - p p^T),    M = m_body + sum m + what the reel holds
+
+with F, N of everything, the weight of the end masses included. The reel's equations are in `fieldline.dynamics.lines.reel`.
+
+Source: the discretisation is that of SKYHOOK (Kalaghan et al. 1978; Smithsonian Astrophysical Observatory 1982, s. 3.2).
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from fieldline.compiled import inner, merged
+from fieldline.dynamics.layout import NOTHING, attitude_at, feeds_at, nodes_at, store, temperatures_at, three
+from fieldline.dynamics.lines.reel import feed_acceleration, reel_push
+from fieldline.dynamics.lines.segment_loads import segment_load
+from fieldline.dynamics.load_log import LINES, impose
+from fieldline.dynamics.loads.joint import joint_torque
+from fieldline.dynamics.loads.line import line_tension
+from fieldline.dynamics.parameters import NO_REEL, TANGENT
+from fieldline.environment.gravity import gravity_kernel
+from fieldline.frames.attitude import to_body, to_inertial
+from fieldline.frames.matrices import matvec, transpose
+from fieldline.frames.vectors import add, axpy, cross, dot, scale, sub, vec
+
+END_MASS = 10  # numbers of an end mass of equation (3): sum m, S (3), J (xx, yy, zz, xy, xz, yz)
+
+
+@inner
+def weight_per_mass(r_i, dcm_ei, surroundings):
+    """The Earth's pull [m/s^2], inertial axes."""
+    if surroundings.rotating:
+        return matvec(transpose(dcm_ei), gravity_kernel(matvec(dcm_ei, r_i), surroundings.gravity))
+    return gravity_kernel(r_i, surroundings.gravity)
+
+
+@inner
+def slide(t, s, sliders, inputs):
+    """Where slider s stands along its axis [m], and how fast it moves [m/s]: at its speed until it is there."""
+    way = inputs.slide_to[s] - inputs.slide_from[s]
+    gone = sliders.speed[s] * (t - inputs.slide_since[s])
+    if gone >= abs(way):
+        return inputs.slide_to[s], 0.0
+    sign = 1.0 if way > 0.0 else -1.0
+    return inputs.slide_from[s] + sign * gone, sign * sliders.speed[s]
+
+
+@inner
+def attachment(t, k, end, plant, inputs):
+    """Attachment of line k at an end, 0 for A and 1 for B: place [m] and its rate [m/s] in the body, body axes."""
+    point = three(plant.lines.point[k], 3 * end)
+    rate = NOTHING
+    for s in range(plant.sliders.line.shape[0]):
+        if plant.sliders.line[s] == k and plant.sliders.end[s] == end:
+            place, speed = slide(t, s, plant.sliders, inputs)
+            point = axpy(place, vec(plant.sliders.axis, s), point)
+            rate = axpy(speed, vec(plant.sliders.axis, s), rate)
+    return point, rate
+
+
+@inner
+def line_end(z, start, b, point_b, point_rate_b):
+    """Attachment point on body b: its place and velocity, inertial axes, and the body's attitude."""
+    base = TANGENT * b
+    q = attitude_at(z, start, b)
+    swing_b = add(point_rate_b, cross(three(z, base + 9), point_b))
+    place = add(three(z, base), to_inertial(q, point_b))
+    return place, add(three(z, base + 3), to_inertial(q, swing_b)), q
+
+
+@inner
+def gather(b, mass, point_b, end_mass):
+    """Add a point mass [kg] at a place in body b [m] to its end masses; equation (3)."""
+    x, y, z = point_b
+    end_mass[b, 0] += mass
+    end_mass[b, 1] += mass * x
+    end_mass[b, 2] += mass * y
+    end_mass[b, 3] += mass * z
+    end_mass[b, 4] += mass * (y * y + z * z)
+    end_mass[b, 5] += mass * (x * x + z * z)
+    end_mass[b, 6] += mass * (x * x + y * y)
+    end_mass[b, 7] -= mass * x * y
+    end_mass[b, 8] -= mass * x * z
+    end_mass[b, 9] -= mass * y * z
+
+
+@inner
+def unstretched(j, k, z, feed, warm, lines):
+    """l0 [m] of segment j of line k, and its rate [m/s]: as warm as it is, and fed where it is the last one."""
+    if j == lines.nodes[k]:
+        rest, rate = z[feed], z[feed + 1]
+    else:
+        rest, rate = lines.rest[lines.first[k] + k + j], 0.0
+    if warm >= 0:
+        grown = 1.0 + lines.expansion[k] * (z[warm + j] - lines.reference[k])
+        return rest * grown, rate * grown
+    return rest, rate
+
+
+@inner
+def load_end(b, mass, point_b, pull_i, weight_i, q, log, outer, end_mass):
+    """An end's pull [N] and its half segment [kg] on body b."""
+    force_i = axpy(mass, weight_i, pull_i)
+    impose(log, LINES, b, force_i, cross(point_b, to_body(q, force_i)), outer)
+    if mass > 0.0:
+        gather(b, mass, point_b, end_mass)
+
+
+@inner
+def damp_joint(b, beta, point_b, q, omega_b, chord_i, chord_rate_i, log, outer):
+    """Angular damping where a taut line is attached."""
+    torque_i = joint_torque(to_inertial(q, point_b), to_inertial(q, omega_b), chord_i, chord_rate_i, beta)
+    impose(log, LINES, b, NOTHING, to_body(q, torque_i), outer)
+
+
+@merged
+def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
+    """Rates of line k into `out`, its loads on the bodies into shared.outer and shared.end_mass."""
+    lines, surroundings, outer = plant.lines, plant.surroundings, shared.outer
+    a, b = lines.body[k, 0], lines.body[k, 1]
+    point_a, slide_a = attachment(t, k, 0, plant, inputs)
+    point_b, slide_b = attachment(t, k, 1, plant, inputs)
+    place_a, speed_a, q_a = line_end(z, start, a, point_a, slide_a)
+    place_b, speed_b, q_b = line_end(z, start, b, point_b, slide_b)
+    nodes, row = lines.nodes[k], lines.first[k] + k
+    base, feed = nodes_at(plant) + 6 * lines.first[k], feeds_at(plant) + 2 * k
+    warm = temperatures_at(plant) + lines.warm[k] if lines.warm[k + 1] > lines.warm[k] else -1
+    p0, v0 = place_a, speed_a
+    behind = NOTHING  # what the segment behind does to the point
+    half = 0.0  # mass of the half segment behind
+    mass_out = 0.0
+    end_a, mass_a = NOTHING, 0.0
+    tension = 0.0
+    for j in range(nodes + 1):
+        if j < nodes:
+            p1, v1 = three(z, base + 6 * j), three(z, base + 6 * j + 3)
+        else:
+            p1, v1 = place_b, speed_b
+        s = row + j
+        rest, rest_rate = unstretched(j, k, z, feed, warm, lines)
+        chord, chord_rate = sub(p1, p0), sub(v1, v0)
+        stretched = sqrt(dot(chord, chord))
+        tension = 0.0
+        ahead = NOTHING
+        if stretched > rest:
+            rate = dot(chord, chord_rate) / stretched - rest_rate * stretched / rest
+            tension = line_tension(stretched, rate, rest, lines.stiffness[s], lines.damping[s])
+            ahead = scale(tension / stretched, chord)
+        shared.tension[s] = tension
+        if tension > 0.0 and j == 0 and lines.joint[k, 0] > 0.0:
+            damp_joint(a, lines.joint[k, 0], point_a, q_a, three(z, TANGENT * a + 9), chord, chord_rate, log, outer)
+        if tension > 0.0 and j == nodes and lines.joint[k, 1] > 0.0:
+            back, back_rate = scale(-1.0, chord), scale(-1.0, chord_rate)
+            damp_joint(b, lines.joint[k, 1], point_b, q_b, three(z, TANGENT * b + 9), back, back_rate, log, outer)
+        next_half = 0.5 * lines.linear_mass[s] * (z[feed] if j == nodes else lines.rest[s])
+        mass_out += 2.0 * next_half
+        push = scale(0.5, segment_load(t, k, s, p0, v0, p1, v1, dcm_ei, lines, shared.ambient)) if lines.exposed[k] else NOTHING
+        pull = add(add(behind, ahead), push)
+        if j == 0:
+            end_a, mass_a = pull, next_half
+        else:
+            at = base + 6 * (j - 1)
+            store(out, at, v0)
+            store(out, at + 3, axpy(1.0 / (half + next_half), pull, weight_per_mass(p0, dcm_ei, surroundings)))
+        behind = sub(push, ahead)
+        half = next_half
+        p0, v0 = p1, v1
+    out[feed] = 0.0
+    out[feed + 1] = 0.0
+    end_b = behind
+    if lines.reel[k] != NO_REEL:
+        out[feed] = z[feed + 1]
+        out[feed + 1] = feed_acceleration(lines.reel[k], inputs.reel[k], z[feed + 1], tension, lines.reel_lag[k])
+        last, last_rate = (place_a, speed_a) if nodes == 0 else (three(z, base + 6 * nodes - 6), three(z, base + 6 * nodes - 3))
+        linear_mass = lines.linear_mass[row + nodes]
+        on_node, on_reel = reel_push(
+            sub(last, place_b), sub(last_rate, speed_b), z[feed], z[feed + 1], out[feed + 1], linear_mass
+        )
+        end_b = add(end_b, on_reel)
+        if nodes == 0:
+            end_a = add(end_a, on_node)
+        else:
+            mass = half + 0.5 * lines.linear_mass[row + nodes - 1] * lines.rest[row + nodes - 1]
+            at = base + 6 * nodes - 3
+            store(out, at, axpy(1.0 / mass, on_node, three(out, at)))
+        shared.end_mass[b, 0] -= mass_out - lines.stored[k]
+    weight_a = weight_per_mass(place_a, dcm_ei, surroundings) if mass_a > 0.0 else NOTHING
+    weight_b = weight_per_mass(place_b, dcm_ei, surroundings) if half > 0.0 else NOTHING
+    load_end(a, mass_a, point_a, end_a, weight_a, q_a, log, outer, shared.end_mass)
+    load_end(b, half, point_b, end_b, weight_b, q_b, log, outer, shared.end_mass)
+
+
+@inner
+def lines_rates(t, z, start, dcm_ei, plant, inputs, shared, log, out):
+    """All lines: rates of nodes and feeds into `out`, loads on the bodies into shared.outer and shared.end_mass."""
+    shared.end_mass[:, :] = 0.0
+    for k in range(plant.lines.nodes.shape[0]):
+        line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out)
