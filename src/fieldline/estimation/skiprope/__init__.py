@@ -10,6 +10,10 @@ or, beyond the source, by least squares without a filter,
 
     cone_at(harmonic_cone(seconds, field_b, geometry, 0.005), seconds)
 
+or everything at once, with the frequency found and the word whether there is a cone at all,
+
+    estimate = estimate_skiprope(skiprope_signals(seconds, field_b, field_c), tether_length_m=20e3)
+
 Source: Polites (1991), NASA TP-3123.
 """
 
@@ -24,6 +28,7 @@ from fieldline.estimation.skiprope.bandpass import (
 )
 from fieldline.estimation.skiprope.coning import axes_about, despun
 from fieldline.estimation.skiprope.cycles import extremes, fit_cycles, zero_crossings
+from fieldline.estimation.skiprope.estimate import METHODS, RULES, estimate_skiprope
 from fieldline.estimation.skiprope.harmonic import (
     HarmonicCone,
     circular_parts,
@@ -42,17 +47,31 @@ from fieldline.estimation.skiprope.position import (
     tilt_azimuth,
 )
 from fieldline.estimation.skiprope.reading import ConeReading, FieldKnowledge, read_cone
+from fieldline.estimation.skiprope.rotary import Detection, Line, detect
 from fieldline.estimation.skiprope.signals import (
     ORBITAL_FROM_CONE,
     FieldGeometry,
+    SkipropeSignals,
     corrected_signals,
     field_geometry,
     field_vector,
+    skiprope_signals,
     yaw_signal,
 )
+from fieldline.estimation.skiprope.solution import PlaneCrossings, SkipropeEstimate
 from fieldline.estimation.skiprope.tuning import Tuning, tune
 
 __all__ = [
+    "estimate_skiprope",
+    "METHODS",
+    "RULES",
+    "SkipropeEstimate",
+    "PlaneCrossings",
+    "SkipropeSignals",
+    "skiprope_signals",
+    "detect",
+    "Detection",
+    "Line",
     "field_geometry",
     "field_vector",
     "FieldGeometry",

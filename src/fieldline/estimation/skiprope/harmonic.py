@@ -13,9 +13,13 @@ as it is slow: none is assumed constant beyond the window. Scale errors drop out
 nothing is seen of a rotation about B; over a window with the field level, that is a tilt across the plane of field and
 vertical, so the covariance there grows, and says so.
 
+With `rounds` above 1 the known field is turned by the slow part found, window by window, and the rest fitted anew: what is
+left of theta is then small however wrong the known field is, and the phasors are along the body's own axes, which a yaw
+turns against (U, V). The slow part is then seen in `azimuth_off_rad`.
+
 Each window has the covariance of its residual, times what their correlation from sample to sample takes from their number.
 
-Linear in theta: errors of its square, 1e-3 of the tilt at 3 deg.
+Linear in what is left of theta: errors of its square, 1e-3 of the tilt at 3 deg.
 """
 
 from __future__ import annotations
@@ -44,6 +48,7 @@ class HarmonicCone(NamedTuple):
     covariance: np.ndarray  # (m, 4, 4) [rad^2] of Re z1, Im z1, Re z2, Im z2
     yaw_rad: np.ndarray  # (m,) slow part about W
     window_s: float
+    azimuth_off_rad: np.ndarray  # (m,) azimuth of the known field less that of the measured one's slow part
 
 
 def harmonic_cone(
@@ -88,6 +93,7 @@ def fit_harmonics(
     step_s: float | None = None,
     degree: int = 2,
     other_lines_hz=(),
+    rounds: int = 1,
 ) -> HarmonicCone:
     """Equation (2) in windows along a record.
 
@@ -95,7 +101,7 @@ def fit_harmonics(
     ----------
     seconds : (n,) [s]. field_b : (n, 3) [T], body axes, as measured. geometry : the known field's.
     frequency_hz : w / 2 pi, positive. window_s, step_s : three periods every half period by default.
-    degree : of the slow parts. other_lines_hz : of motions besides, such as the pendulous one.
+    degree : of the slow parts. other_lines_hz : of motions besides, such as the pendulous one. rounds : see above.
 
     Errors: InputError for arguments; NoEstimateError where the record is shorter than a window.
     """
@@ -117,11 +123,11 @@ def fit_harmonics(
         if last - first < 0.5 * window / max(np.median(np.diff(times)), 1e-9):
             continue
         columns = _motions(times[first:last] - middle, 0.5 * window, degree, frequency_hz, other_lines_hz)
-        rows.append((middle, *_solved(columns, off[first:last], unit[first:last], degree)))
+        rows.append((middle, *_solved_again(columns, off[first:last], unit[first:last], degree, rounds)))
     if not rows:
         raise NoEstimateError(f"no window of {window:.0f} s is at least half full of good samples; give a longer record.")
-    middle, phasor, covariance, yaw = map(np.array, zip(*rows, strict=True))
-    return HarmonicCone(float(frequency_hz), middle, phasor, covariance, yaw, float(window))
+    middle, phasor, covariance, yaw, azimuth_off = map(np.array, zip(*rows, strict=True))
+    return HarmonicCone(float(frequency_hz), middle, phasor, covariance, yaw, float(window), azimuth_off)
 
 
 def smoothed(cone: HarmonicCone, memory_s: float) -> HarmonicCone:
@@ -133,7 +139,7 @@ def smoothed(cone: HarmonicCone, memory_s: float) -> HarmonicCone:
     """
     frame = np.exp(2j * np.pi * cone.frequency_hz * (cone.middle_s - cone.middle_s[0]))
     still = cone.phasor / frame[:, None]
-    turn = _turns(1.0 / frame)
+    turn = turns(1.0 / frame)
     information = np.linalg.inv(turn @ cone.covariance @ turn.transpose(0, 2, 1))
     values = np.stack([still[:, 0].real, still[:, 0].imag, still[:, 1].real, still[:, 1].imag], axis=1)
     weighed = np.einsum("nij,nj->ni", information, values)
@@ -141,7 +147,7 @@ def smoothed(cone: HarmonicCone, memory_s: float) -> HarmonicCone:
     covariance = np.linalg.inv(np.einsum("mn,nij->mij", near, information))
     found = np.einsum("mij,mj->mi", covariance, near @ weighed)
     phasor = np.stack([found[:, 0] + 1j * found[:, 1], found[:, 2] + 1j * found[:, 3]], axis=1) * frame[:, None]
-    back = _turns(frame)
+    back = turns(frame)
     shared = cone.window_s / np.median(np.diff(cone.middle_s)) if len(cone.middle_s) > 1 else 1.0
     return cone._replace(phasor=phasor, covariance=max(shared, 1.0) * (back @ covariance @ back.transpose(0, 2, 1)))
 
@@ -191,7 +197,7 @@ def _motions(t, half: float, degree: int, frequency_hz: float, other_lines_hz) -
     return theta
 
 
-def _turns(factor) -> np.ndarray:
+def turns(factor) -> np.ndarray:
     """(m, 4, 4): a multiplication of both phasors by unit complex numbers (m,), on their real and imaginary parts."""
     turn = np.zeros((len(factor), 4, 4))
     for k in (0, 2):
@@ -200,8 +206,32 @@ def _turns(factor) -> np.ndarray:
     return turn
 
 
-def _solved(theta, off, unit, degree: int):
-    """Phasors, their covariance and the yaw of a window by (2)."""
+def _solved_again(theta, off, unit, degree: int, rounds: int):
+    """Phasors, covariance, yaw and azimuth of a window, the known directions `unit` (n, 3) turned by the slow part in turn."""
+    measured, known, yaw = off + unit, unit, 0.0
+    slow = slice(4, 4 + 3 * (degree + 1))
+    middle = len(unit) // 2
+    for last in range(max(rounds, 1) - 1, -1, -1):
+        found, covariance = _solved(theta, measured - unit, unit)
+        yaw += found[6]
+        unit = _turned(unit, -theta[:, :, slow] @ found[slow])
+        if not last:
+            break
+    azimuth = np.arctan2(-known[middle, 0], known[middle, 1]) - np.arctan2(-unit[middle, 0], unit[middle, 1])
+    azimuth = (azimuth + np.pi) % (2.0 * np.pi) - np.pi
+    return np.array([found[0] + 1j * found[1], found[2] + 1j * found[3]]), covariance, yaw, azimuth
+
+
+def _turned(vectors, angles) -> np.ndarray:
+    """(n, 3) vectors turned by rotation vectors (n, 3) [rad], exactly."""
+    size = np.linalg.norm(angles, axis=1, keepdims=True)
+    axis = angles / np.maximum(size, 1e-300)
+    along = axis * np.sum(axis * vectors, axis=1, keepdims=True)
+    return along + np.cos(size) * (vectors - along) + np.sin(size) * np.cross(axis, vectors)
+
+
+def _solved(theta, off, unit):
+    """All unknowns of a window by (2), and the covariance of its phasors."""
     turned = -np.cross(theta, unit[:, :, None], axisa=1, axisb=1, axisc=1)
     matrix, target = turned.reshape(-1, theta.shape[2]), off.reshape(-1)
     inverse = np.linalg.pinv(matrix.T @ matrix, rcond=1e-12, hermitian=True)
@@ -211,4 +241,4 @@ def _solved(theta, off, unit, degree: int):
     alike = np.sum(left[1:] * left[:-1]) / max(np.sum(left**2), 1e-300)
     inflation = (1.0 + max(alike, 0.0)) / max(1.0 - alike, 1e-2)
     covariance = inverse[:4, :4] * (np.sum(left**2) / free * inflation)
-    return np.array([found[0] + 1j * found[1], found[2] + 1j * found[3]]), covariance, found[6]
+    return found, covariance

@@ -28,11 +28,13 @@ Source: Polites (1991), NASA TP-3123, section II; its equation numbers.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from fieldline.errors import InputError
+from fieldline.errors import InputError, NoEstimateError
 
 ORBITAL_FROM_CONE = np.diag([1.0, -1.0, -1.0])  # v_o = ORBITAL_FROM_CONE @ v_c, and back with the same matrix
 
@@ -43,6 +45,98 @@ class FieldGeometry(NamedTuple):
     magnitude_tesla: np.ndarray
     elevation_rad: np.ndarray
     azimuth_rad: np.ndarray
+
+
+@dataclass(frozen=True)
+class SkipropeSignals:
+    """What every estimator of the skiprope takes: n good samples in rising time. Made by `skiprope_signals`.
+
+    seconds (n,) [s]; field_b (n, 3) [T] as measured, body axes near (U, V, W); geometry: the known field's, (n,) each.
+    """
+
+    seconds: np.ndarray
+    field_b: np.ndarray
+    geometry: FieldGeometry
+
+    @cached_property
+    def corrected(self) -> np.ndarray:
+        """(n, 3) [rad] C1, C2, C3 of (7)."""
+        return corrected_signals(self.field_b, self.geometry)
+
+    @cached_property
+    def direction_c(self) -> np.ndarray:
+        """(n, 3) unit vectors of the known field, axes (U, V, W)."""
+        return field_vector(self.geometry._replace(magnitude_tesla=np.ones_like(self.geometry.magnitude_tesla)))
+
+    @cached_property
+    def direction_b(self) -> np.ndarray:
+        """(n, 3) unit vectors of the measured field, body axes."""
+        return self.field_b / np.linalg.norm(self.field_b, axis=1, keepdims=True)
+
+    @cached_property
+    def step_s(self) -> float:
+        """[s] between samples, the median."""
+        return float(np.median(np.diff(self.seconds))) if len(self.seconds) > 1 else np.inf
+
+    @property
+    def span_s(self) -> float:
+        """[s] from the first sample to the last."""
+        return float(self.seconds[-1] - self.seconds[0])
+
+    @cached_property
+    def longest_gap_s(self) -> float:
+        """[s] between two neighbouring samples, at most."""
+        return float(np.diff(self.seconds).max()) if len(self.seconds) > 1 else 0.0
+
+    def turned(self, yaw_rad) -> SkipropeSignals:
+        """The same with the known field in axes turned by yaw [rad] about W, one number or (n,): those of a body so yawed."""
+        size, elevation, azimuth = self.geometry
+        return SkipropeSignals(self.seconds, self.field_b, FieldGeometry(size, elevation, azimuth - yaw_rad))
+
+    def between(self, first_s: float, last_s: float) -> SkipropeSignals:
+        """The samples from first_s to last_s [s], both included."""
+        kept = (self.seconds >= first_s) & (self.seconds <= last_s)
+        return SkipropeSignals(self.seconds[kept], self.field_b[kept], FieldGeometry(*(x[kept] for x in self.geometry)))
+
+    def thinned(self, width_s: float) -> SkipropeSignals:
+        """Means of both fields over bins of `width_s` [s]; the same where samples are further apart than half of that."""
+        if not self.step_s < 0.75 * width_s:
+            return self
+        place = ((self.seconds - self.seconds[0]) / width_s + 1e-6).astype(int)
+        count = np.bincount(place)
+        kept = count > 0
+
+        def mean(x):
+            return np.bincount(place, x)[kept] / count[kept]
+
+        measured, known = (np.stack([mean(x) for x in rows.T], axis=1) for rows in (self.field_b, field_vector(self.geometry)))
+        start = self.seconds[0]
+        return SkipropeSignals(start + mean(self.seconds - start), measured, field_geometry(known))
+
+
+def skiprope_signals(seconds, field_b, field_c) -> SkipropeSignals:
+    """Signals from times (n,) [s], the measured field (n, 3) [T], body axes, and the known one (n, 3) [T], axes (U, V, W).
+
+    Samples that are not finite, or without any field, are left out. For orbital axes field_c = field_o @ ORBITAL_FROM_CONE.
+
+    Errors: InputError for shapes that do not fit or times that do not rise; NoEstimateError where fewer than 8 are left.
+    """
+    measured, known = _rows("field_b", field_b), _rows("field_c", field_c)
+    times = np.asarray(seconds, dtype=float)
+    if times.ndim != 1 or not len(times) == len(measured) == len(known):
+        raise InputError(
+            "seconds (n,), field_b and field_c (n, 3) must have one row for each sample; "
+            f"got {times.shape}, {measured.shape}, {known.shape}."
+        )
+    with np.errstate(invalid="ignore"):
+        sizes = (np.linalg.norm(measured, axis=1), np.linalg.norm(known, axis=1))
+    good = np.isfinite(times) & np.isfinite(sizes[0]) & np.isfinite(sizes[1]) & (sizes[0] > 0.0) & (sizes[1] > 0.0)
+    if good.sum() < 8:
+        raise NoEstimateError(f"only {int(good.sum())} of {len(times)} samples hold both a measured and a known field.")
+    times = times[good]
+    if not (np.diff(times) > 0.0).all():
+        raise InputError("seconds must rise from sample to sample; sort the rows and drop repeats first.")
+    return SkipropeSignals(times, np.ascontiguousarray(measured[good]), field_geometry(known[good]))
 
 
 def field_geometry(field_c) -> FieldGeometry:

@@ -1,0 +1,200 @@
+"""Is there a cone at all, and at which frequency: the spectrum of the two turning parts, and what noise alone would show.
+
+The measured direction is off the known one by m_k = M_k (a1, a2), M_k = -[e1 x B, e2 x B] (unit vectors). With Hann's window
+w_k over the record, and everything that is slower than two periods of it fitted as a rotation and taken off,
+
+    S = sum w_k M_k' M_k,    v(f) = sum w_k M_k' m_k exp(-2 pi i f t_k),    z(f) = 2 S^-1 v                          (1)
+
+are the phasors of (a1, a2) at f, for a field that turns little in a period; half of z1 +- i z2 turns one way, half the
+other. Against the spectrum near by,
+
+    q(f) = Q(f) / Q_near * 3.357,    Q = v* S^-1 v                                                                  (2)
+
+follows chi-squared of four where there is nothing but noise that is smooth in frequency (3.357 is its median; Q_near the
+median of Q from half to twice f, the line's own width left out). The highest of N independent cells, with the record's
+length over 1.5 of them in a hertz, passes the threshold x with
+
+    P = 1 - (1 - (1 + x / 2) exp(-x / 2))^N                                                                         (3)
+
+What turns is told from what swings by the share of the power in which the two parts differ; the pendulous motion of TP-3123
+swings in a plane. Lines above the band asked for are never taken for the cone: they are listed as other motions.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fieldline.errors import InputError, NoEstimateError
+from fieldline.estimation.skiprope.bandpass import positive
+from fieldline.estimation.skiprope.signals import SkipropeSignals
+
+BAND_HZ = (0.001, 0.02)
+FEWEST_PERIODS = 2.5
+BINS_PER_PERIOD = 8
+FINENESS = 4  # frequencies per 1 / length
+HALF_WIDTH = 2.5  # of a line, over the record's length
+SLOW_DEGREE = 3
+LEAST_TURNING = 0.2  # of a line that turns
+LEAST_SHARE = 0.1  # of the strongest turning line's amplitude: a weaker one is not taken for the cone
+MEDIAN = 3.357
+CELL = 1.5  # over the record's length: between independent values
+
+
+class Line(NamedTuple):
+    """A line of the spectrum."""
+
+    frequency_hz: float
+    amplitude_rad: float  # of the larger turning part
+    turning: float  # -1 to 1: power of the part that turns from V towards -U, less the other's, over both
+    strength: float  # q of (2)
+
+
+class Rotary(NamedTuple):
+    """The spectrum (1), and how large a round cone makes Q one."""
+
+    frequency_hz: np.ndarray  # (k,)
+    forward_rad: np.ndarray  # (k,) amplitude of the part that turns from V towards -U (sense 1)
+    backward_rad: np.ndarray  # (k,) and of the other
+    power: np.ndarray  # (k,) Q of (2)
+    unit_rad: float
+
+
+class Detection(NamedTuple):
+    """What the spectrum shows, and the threshold it was held against."""
+
+    frequency_hz: np.ndarray  # (k,)
+    forward_rad: np.ndarray  # (k,)
+    backward_rad: np.ndarray  # (k,)
+    strength: np.ndarray  # (k,) q of (2)
+    threshold: float  # of q
+    threshold_rad: np.ndarray  # (k,) amplitude of a round cone that reaches it
+    false_alarm: float  # P of (3), as asked for
+    lines: tuple[Line, ...]  # all above the threshold, by frequency
+    cone: Line | None  # the one taken for the skiprope
+    others: tuple[Line, ...]  # taken for the pendulous or other motions
+    resolution_hz: float
+
+
+def detect(signals: SkipropeSignals, *, band_hz=BAND_HZ, highest_hz: float | None = None, false_alarm: float = 0.01) -> Detection:
+    """Equations (1) to (3): all lines up to `highest_hz`, and the one in `band_hz` that is the cone.
+
+    That is the slowest line in the band that turns and has a tenth of the strongest's amplitude or more; where none turns,
+    the strongest. highest_hz : five times the band's upper end by default, or half the sampling rate.
+
+    Errors: NoEstimateError where the record holds less than two and a half periods of the band's upper end.
+    """
+    low, high = (positive("band_hz", edge) for edge in band_hz)
+    if not low < high or not 0.0 < false_alarm < 1.0:
+        raise InputError(f"band_hz must rise and false_alarm lie between 0 and 1; got {band_hz!r}, {false_alarm!r}.")
+    top = min(5.0 * high if highest_hz is None else positive("highest_hz", highest_hz), 0.5 / signals.step_s)
+    low, high = max(low, FEWEST_PERIODS / signals.span_s), min(high, top)
+    if not low < high:
+        raise NoEstimateError(
+            f"the record holds {signals.span_s:.0f} s at a step of {signals.step_s:.3g} s; a skiprope of {band_hz[0]:.3g} to "
+            f"{band_hz[1]:.3g} Hz needs at least {FEWEST_PERIODS} of its periods, and two samples in each: give a longer record."
+        )
+    found = rotary_spectrum(signals, top)
+    width = HALF_WIDTH / signals.span_s
+    near = _near(found.power, found.frequency_hz, width)
+    strength = found.power / near * MEDIAN
+    threshold = chi2_4_threshold(false_alarm, max((high - low) * signals.span_s / CELL, 1.0))
+    lines = _lines(found, strength, threshold, width, low)
+    cone = _cone([line for line in lines if line.frequency_hz <= high])
+    return Detection(
+        *found[:3],
+        strength,
+        threshold,
+        found.unit_rad * np.sqrt(threshold / MEDIAN * near),
+        false_alarm,
+        lines,
+        cone,
+        tuple(line for line in lines if line is not cone),
+        width,
+    )
+
+
+def rotary_spectrum(signals: SkipropeSignals, highest_hz: float) -> Rotary:
+    """Equation (1) from zero to `highest_hz`, of samples averaged in bins of an eighth of its period."""
+    width = max(1.0 / (BINS_PER_PERIOD * highest_hz), signals.step_s)
+    thin = signals.thinned(width)
+    place = ((thin.seconds - thin.seconds[0]) / width + 0.5).astype(int)
+    known, off = thin.direction_c, thin.direction_b - thin.direction_c
+    taper = (0.5 - 0.5 * np.cos(2.0 * np.pi * (place + 0.5) / (place[-1] + 1)))[:, None]
+    motion = np.stack([_crossed(axis, known) for axis in (0, 1, 2)], axis=-1)
+    x = (2.0 * place / max(place[-1], 1) - 1.0)[:, None, None]
+    slow = np.concatenate([motion * x**power for power in range(SLOW_DEGREE + 1)], axis=-1)
+    matrix = (slow * np.sqrt(taper)[:, :, None]).reshape(-1, slow.shape[-1])
+    fitted = np.linalg.lstsq(matrix, (off * np.sqrt(taper)).reshape(-1), rcond=1e-10)[0]
+    left = taper * (off - slow @ fitted)
+    across = np.einsum("nij,ni->nj", motion[:, :, :2], left)
+    inverse = np.linalg.inv(np.einsum("n,nij,nik->jk", taper[:, 0], motion[:, :, :2], motion[:, :, :2]))
+    size = 1 << int(np.ceil(np.log2(FINENESS * (place[-1] + 1))))
+    v = np.stack([np.fft.rfft(np.bincount(place, column, minlength=place[-1] + 1), size) for column in across.T], axis=1)
+    z = 2.0 * v @ inverse
+    power = np.real(np.einsum("ki,ij,kj->k", v.conj(), inverse, v))
+    frequency = np.arange(len(v)) / (size * width)
+    kept = frequency <= highest_hz
+    forward, backward = 0.5 * np.abs(z[:, 0] + 1j * z[:, 1]), 0.5 * np.abs(z[:, 0] - 1j * z[:, 1])
+    unit = 2.0 / np.sqrt(np.trace(np.linalg.inv(inverse)))  # Q = a^2 tr S / 4 for a round cone
+    return Rotary(frequency[kept], forward[kept], backward[kept], power[kept], float(unit))
+
+
+def chi2_4_threshold(false_alarm: float, cells: float) -> float:
+    """The threshold x of (3), by Newton's rule on its logarithm."""
+    tail = -np.expm1(np.log1p(-false_alarm) / cells)
+    x = -2.0 * np.log(tail)
+    for _ in range(40):
+        x += (np.log1p(0.5 * x) - 0.5 * x - np.log(tail)) * (1.0 + 0.5 * x) / (0.25 * x)
+    return float(x)
+
+
+def _crossed(axis: int, known) -> np.ndarray:
+    """(n, 3): what a turn by one radian about an axis makes of the directions, -e x B."""
+    return np.cross(known, np.eye(3)[axis])
+
+
+def _near(power, frequency, width: float) -> np.ndarray:
+    """(k,) median of the power from half to twice each frequency, and at least six widths about it, without its own."""
+    near = np.empty_like(power)
+    step = frequency[1] - frequency[0]
+    own = int(np.ceil(width / step))
+    for k in range(len(power)):
+        reach = max(k // 2, 4 * own)
+        first, last = max(k - reach, own), k + 2 * reach + 1
+        around = np.concatenate([power[first : max(k - own, first)], power[k + own + 1 : last]])
+        near[k] = np.median(around) if len(around) else np.inf
+    return np.maximum(near, 1e-300)
+
+
+def _lines(found: Rotary, strength, threshold: float, width: float, lowest_hz: float) -> tuple[Line, ...]:
+    """Local maxima above the threshold, the strongest of each width, by frequency."""
+    own = max(int(width / (found.frequency_hz[1] - found.frequency_hz[0])), 1)
+    lines = []
+    for k in np.flatnonzero((strength > threshold) & (found.frequency_hz >= lowest_hz)):
+        around = found.power[max(k - own, 0) : k + own + 1]
+        if found.power[k] < around.max():
+            continue
+        forward, backward = found.forward_rad[k], found.backward_rad[k]
+        turning = (forward**2 - backward**2) / (forward**2 + backward**2)
+        lines.append(Line(_peak(found, k), float(max(forward, backward)), float(turning), float(strength[k])))
+    return tuple(lines)
+
+
+def _peak(found: Rotary, k: int) -> float:
+    """[Hz] of the parabola's top through the logarithms of three values."""
+    step = found.frequency_hz[1] - found.frequency_hz[0]
+    if not 0 < k < len(found.power) - 1:
+        return float(found.frequency_hz[k])
+    before, here, after = np.log(found.power[k - 1 : k + 2])
+    return float(found.frequency_hz[k] + 0.5 * step * (before - after) / (before - 2.0 * here + after))
+
+
+def _cone(lines) -> Line | None:
+    """The line that is the cone: see `detect`."""
+    turning = [line for line in lines if abs(line.turning) >= LEAST_TURNING]
+    if not turning:
+        return max(lines, key=lambda line: line.amplitude_rad, default=None)
+    largest = max(line.amplitude_rad for line in turning)
+    return min((line for line in turning if line.amplitude_rad >= LEAST_SHARE * largest), key=lambda line: line.frequency_hz)
