@@ -1,22 +1,24 @@
 """Is there a cone at all, and at which frequency: the spectrum of the two turning parts, and what noise alone would show.
 
-The measured direction is off the known one by m_k = M_k (a1, a2), M_k = -[e1 x B, e2 x B] (unit vectors). With Hann's window
-w_k over the record, and everything that is slower than two periods of it fitted as a rotation and taken off,
+The measured direction is off the known one by m_k = M_k (a1, a2), M_k = -[e1 x B, e2 x B] (unit vectors). The record is cut
+into K pieces of about an orbit. In each, whatever is slower than 1 mHz is fitted as a rotation of Legendre polynomials and
+taken off, and with Hann's window w_k
 
     S = sum w_k M_k' M_k,    v(f) = sum w_k M_k' m_k exp(-2 pi i f t_k),    z(f) = 2 S^-1 v                          (1)
 
 are the phasors of (a1, a2) at f, for a field that turns little in a period; half of z1 +- i z2 turns one way, half the
 other. Against the spectrum near by,
 
-    q(f) = Q(f) / Q_near * 3.357,    Q = v* S^-1 v                                                                  (2)
+    q(f) = Q(f) / Q_near * median of chi-squared of 4 K,    Q = sum over pieces of v* S^-1 v                        (2)
 
-follows chi-squared of four where there is nothing but noise that is smooth in frequency (3.357 is its median; Q_near the
-median of Q from half to twice f, the line's own width left out). The highest of N independent cells, with the record's
-length over 1.5 of them in a hertz, passes the threshold x with
+follows chi-squared of 4 K where there is nothing but noise that is smooth in frequency (Q_near is the median of Q from half to
+twice f, the line's own width left out). The highest of N independent cells, 1.5 over a piece's length apart, passes the
+threshold x with
 
-    P = 1 - (1 - (1 + x / 2) exp(-x / 2))^N                                                                         (3)
+    P = 1 - F(x)^N,     F the distribution of chi-squared of 4 K                                                    (3)
 
-What turns is told from what swings by the share of the power in which the two parts differ; the pendulous motion of TP-3123
+What the known field does within a short record is not smooth in frequency: a line with fewer than six periods must have
+0.06 deg besides. What turns is told from what swings by the share of the power in which the two parts differ; the pendulous motion of TP-3123
 swings in a plane. Lines above the band asked for are never taken for the cone: they are listed as other motions.
 """
 
@@ -30,16 +32,19 @@ from fieldline.errors import InputError, NoEstimateError
 from fieldline.estimation.skiprope.bandpass import positive
 from fieldline.estimation.skiprope.signals import SkipropeSignals
 
-BAND_HZ = (0.001, 0.02)
+BAND_HZ = (0.002, 0.02)
 FEWEST_PERIODS = 2.5
 BINS_PER_PERIOD = 8
 FINENESS = 4  # frequencies per 1 / length
-HALF_WIDTH = 2.5  # of a line, over the record's length
-SLOW_DEGREE = 3
+HALF_WIDTH = 2.5  # of a line, over a piece's length
+PIECE_S = 6000.0
+SLOW_HZ = 0.001
+LEAST_DEGREE = 3
 LEAST_TURNING = 0.2  # of a line that turns
 LEAST_SHARE = 0.1  # of the strongest turning line's amplitude: a weaker one is not taken for the cone
-MEDIAN = 3.357
-CELL = 1.5  # over the record's length: between independent values
+LEAST_RAD = np.radians(0.06)  # of a line with fewer than six periods in the record: field errors reach half of that
+FEW_PERIODS = 6.0
+CELL = 1.5  # over a piece's length: between independent values
 
 
 class Line(NamedTuple):
@@ -59,6 +64,8 @@ class Rotary(NamedTuple):
     backward_rad: np.ndarray  # (k,) and of the other
     power: np.ndarray  # (k,) Q of (2)
     unit_rad: float
+    pieces: int
+    piece_s: float
 
 
 class Detection(NamedTuple):
@@ -96,17 +103,19 @@ def detect(signals: SkipropeSignals, *, band_hz=BAND_HZ, highest_hz: float | Non
             f"{band_hz[1]:.3g} Hz needs at least {FEWEST_PERIODS} of its periods, and two samples in each: give a longer record."
         )
     found = rotary_spectrum(signals, top)
-    width = HALF_WIDTH / signals.span_s
+    width = HALF_WIDTH / found.piece_s
+    median, threshold = chi2_levels(4 * found.pieces, false_alarm, max((high - low) * found.piece_s / CELL, 1.0))
     near = _near(found.power, found.frequency_hz, width)
-    strength = found.power / near * MEDIAN
-    threshold = chi2_4_threshold(false_alarm, max((high - low) * signals.span_s / CELL, 1.0))
+    floor = median / threshold * (LEAST_RAD / found.unit_rad) ** 2
+    near = np.where(found.frequency_hz * found.piece_s < FEW_PERIODS, np.maximum(near, floor), near)
+    strength = found.power / near * median
     lines = _lines(found, strength, threshold, width, low)
     cone = _cone([line for line in lines if line.frequency_hz <= high])
     return Detection(
         *found[:3],
         strength,
         threshold,
-        found.unit_rad * np.sqrt(threshold / MEDIAN * near),
+        found.unit_rad * np.sqrt(threshold / median * near),
         false_alarm,
         lines,
         cone,
@@ -120,34 +129,52 @@ def rotary_spectrum(signals: SkipropeSignals, highest_hz: float) -> Rotary:
     width = max(1.0 / (BINS_PER_PERIOD * highest_hz), signals.step_s)
     thin = signals.thinned(width)
     place = ((thin.seconds - thin.seconds[0]) / width + 0.5).astype(int)
-    known, off = thin.direction_c, thin.direction_b - thin.direction_c
-    taper = (0.5 - 0.5 * np.cos(2.0 * np.pi * (place + 0.5) / (place[-1] + 1)))[:, None]
-    motion = np.stack([_crossed(axis, known) for axis in (0, 1, 2)], axis=-1)
-    x = (2.0 * place / max(place[-1], 1) - 1.0)[:, None, None]
-    slow = np.concatenate([motion * x**power for power in range(SLOW_DEGREE + 1)], axis=-1)
-    matrix = (slow * np.sqrt(taper)[:, :, None]).reshape(-1, slow.shape[-1])
-    fitted = np.linalg.lstsq(matrix, (off * np.sqrt(taper)).reshape(-1), rcond=1e-10)[0]
-    left = taper * (off - slow @ fitted)
-    across = np.einsum("nij,ni->nj", motion[:, :, :2], left)
-    inverse = np.linalg.inv(np.einsum("n,nij,nik->jk", taper[:, 0], motion[:, :, :2], motion[:, :, :2]))
-    size = 1 << int(np.ceil(np.log2(FINENESS * (place[-1] + 1))))
-    v = np.stack([np.fft.rfft(np.bincount(place, column, minlength=place[-1] + 1), size) for column in across.T], axis=1)
-    z = 2.0 * v @ inverse
-    power = np.real(np.einsum("ki,ij,kj->k", v.conj(), inverse, v))
-    frequency = np.arange(len(v)) / (size * width)
+    pieces = max(round(signals.span_s / PIECE_S), 1)
+    bins = int(np.ceil((place[-1] + 1) / pieces))
+    size = 1 << int(np.ceil(np.log2(FINENESS * bins)))
+    frequency = np.arange(size // 2 + 1) / (size * width)
+    turning, power, reach, used = np.zeros((2, len(frequency))), np.zeros(len(frequency)), 0.0, 0
+    for piece in range(pieces):
+        inside = place // bins == piece
+        if inside.sum() < bins // 2:
+            continue
+        v, inverse = _piece(thin.direction_c[inside], thin.direction_b[inside], place[inside] - piece * bins, width, bins, size)
+        z = 2.0 * v @ inverse
+        power += np.real(np.einsum("ki,ij,kj->k", v.conj(), inverse, v))
+        turning += 0.25 * np.abs(np.stack([z[:, 0] + 1j * z[:, 1], z[:, 0] - 1j * z[:, 1]])) ** 2
+        reach += float(np.trace(np.linalg.inv(inverse)))
+        used += 1
+    if not used:
+        raise NoEstimateError("no stretch of the record is at least half full of good samples; its gaps are too many.")
     kept = frequency <= highest_hz
-    forward, backward = 0.5 * np.abs(z[:, 0] + 1j * z[:, 1]), 0.5 * np.abs(z[:, 0] - 1j * z[:, 1])
-    unit = 2.0 / np.sqrt(np.trace(np.linalg.inv(inverse)))  # Q = a^2 tr S / 4 for a round cone
-    return Rotary(frequency[kept], forward[kept], backward[kept], power[kept], float(unit))
+    forward, backward = np.sqrt(turning[:, kept] / used)
+    return Rotary(frequency[kept], forward, backward, power[kept], 2.0 / np.sqrt(reach), used, bins * width)
 
 
-def chi2_4_threshold(false_alarm: float, cells: float) -> float:
-    """The threshold x of (3), by Newton's rule on its logarithm."""
+def _piece(known, measured, place, width: float, bins: int, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """V (k, 2) and the inverse of S of (1), of bins at places within a piece."""
+    from numpy.polynomial.legendre import legvander
+
+    taper = 0.5 - 0.5 * np.cos(2.0 * np.pi * (place + 0.5) / bins)
+    motion = np.stack([_crossed(axis, known) for axis in (0, 1, 2)], axis=-1)
+    off = measured - known
+    degree = max(round(2.0 * SLOW_HZ * bins * width), LEAST_DEGREE)
+    shapes = legvander(2.0 * (place + 0.5) / bins - 1.0, degree)
+    slow = (motion[:, :, None, :] * shapes[:, None, :, None]).reshape(len(place), 3, -1)
+    root = np.sqrt(taper)[:, None]
+    fitted = np.linalg.lstsq((slow * root[:, :, None]).reshape(-1, slow.shape[-1]), (off * root).reshape(-1), rcond=1e-8)[0]
+    across = np.einsum("nij,ni->nj", motion[:, :, :2], taper[:, None] * (off - slow @ fitted))
+    inverse = np.linalg.inv(np.einsum("n,nij,nik->jk", taper, motion[:, :, :2], motion[:, :, :2]))
+    v = np.stack([np.fft.rfft(np.bincount(place, column, minlength=bins), size) for column in across.T], axis=1)
+    return v, inverse
+
+
+def chi2_levels(freedom: int, false_alarm: float, cells: float) -> tuple[float, float]:
+    """The median of chi-squared, and the threshold x of (3)."""
+    from scipy.special import gammainccinv, gammaincinv
+
     tail = -np.expm1(np.log1p(-false_alarm) / cells)
-    x = -2.0 * np.log(tail)
-    for _ in range(40):
-        x += (np.log1p(0.5 * x) - 0.5 * x - np.log(tail)) * (1.0 + 0.5 * x) / (0.25 * x)
-    return float(x)
+    return 2.0 * float(gammaincinv(0.5 * freedom, 0.5)), 2.0 * float(gammainccinv(0.5 * freedom, tail))
 
 
 def _crossed(axis: int, known) -> np.ndarray:
