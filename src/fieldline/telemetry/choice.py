@@ -75,7 +75,7 @@ def choose(source: Source, mapping: Mapping) -> Choice:
     found = [column for column in found if column.name not in taken]
     for quantity in _OPTIONAL_VECTORS:
         _choose_vector(source, mapping, found, quantity, choice)
-    for quantity in ("temperature", "solar_current"):
+    for quantity in ("temperature", "solar_current", "yaw"):
         _choose_single(source, mapping, found, quantity, choice)
     _choose_named(source, mapping, found, choice)
     _choose_position(source, mapping, choice)

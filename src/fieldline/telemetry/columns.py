@@ -42,6 +42,7 @@ _OTHER = set(
     "acc accel accelerometer acceleration quat quaternion q roll pitch yaw euler residue sim truth true counter index id "
     "voltage power battery gps vector d db delta diff aocs other correction corr offset".split()
 )
+_YAW = {"yaw", "angle", "measured", "body", "sensor"}  # an angle of the body, measured apart from the magnetometer
 _RAW_ONLY = {"temperature", "solar_current", "wheel_speed"}  # quantities without axes
 _AXIS_LETTERS = "xyz"
 _ELEMENT = {"0": "x", "1": "y", "2": "z"}
@@ -120,6 +121,8 @@ def recognise(name: str, unit_given: str = "") -> Column | None:
     sun = _sun_sensor(name, stem, words, unit_text or unit_given)
     if sun:
         return sun
+    if "yaw" in words and set(words) <= _YAW and (unit := find_unit(unit_text or unit_given, "yaw")):
+        return Column(name, "yaw", "", unit, "yaw", frozenset(words))
     axis, rest = split_axis(words)
     if set(rest) & _OTHER:
         return None

@@ -25,7 +25,7 @@ from pathlib import Path
 from fieldline.errors import InputError, nearest
 
 VECTORS = ("magnetometer", "gyro", "dipole_command", "position")
-SINGLES = ("time", "temperature", "solar_current")
+SINGLES = ("time", "temperature", "solar_current", "yaw")
 NAMED = ("sun_sensor", "wheel_speed")
 QUANTITIES = (*VECTORS, *SINGLES, *NAMED)
 _SHORT = {"mag": "magnetometer", "dipole": "dipole_command", "wheel": "wheel_speed", "css": "sun_sensor", "sun": "sun_sensor"}

@@ -69,6 +69,7 @@ def telemetry_of(
     temperature_k=None,
     position_e=None,
     solar_current=None,
+    yaw_rad=None,
     name: str = "telemetry",
 ) -> Telemetry:
     """Telemetry of arrays in SI units, as a simulation makes them, with the faults looked for as in a file.
@@ -93,6 +94,7 @@ def telemetry_of(
         temperature_k=temperature_k,
         position_e=position_e,
         solar_current=solar_current,
+        yaw_rad=yaw_rad,
         quality=_account(seconds, faults, {}, ()),
         name=name,
     )
@@ -202,6 +204,7 @@ def _assemble(path, choice: Choice, table: Table, time_utc, field_s, usable, qua
         temperature_k=singles.get("temperature"),
         position_e=position,
         solar_current=singles.get("solar_current"),
+        yaw_rad=singles.get("yaw"),
         recognition=_recognition(choice),
         ignored=(*notes, *choice.ignored),
         quality=quality,

@@ -83,7 +83,8 @@ class Telemetry:
     time_utc (n,) datetime64[ns], strictly increasing; field_s (n, 3) [T], raw, magnetometer's axes; usable (n,) bool;
     rate_b (n, 3) [rad/s] or None: rate gyro; sun_sensor: face ("-x", "+y" …) to raw readings (n,);
     dipole_command_b (n, 3) [A m2] or None; wheel_speed: name to (n,) [rad/s]; temperature_k (n,) [K] or None;
-    position_e (n, 3) [m] ITRS or None; solar_current (n,) [A] or None; recognition: column by column what was read as
+    position_e (n, 3) [m] ITRS or None; solar_current (n,) [A] or None; yaw_rad (n,) [rad] or None, the body's yaw about
+    nadir against the orbital axes, by a sensor besides; recognition: column by column what was read as
     what; ignored: sentences on columns that looked useful and were not used; name and sha256 of the file.
     """
 
@@ -97,6 +98,7 @@ class Telemetry:
     temperature_k: np.ndarray | None = None
     position_e: np.ndarray | None = None
     solar_current: np.ndarray | None = None
+    yaw_rad: np.ndarray | None = None
     recognition: tuple[Recognised, ...] = ()
     ignored: tuple[str, ...] = ()
     quality: Quality

@@ -17,7 +17,7 @@ _VECTORS = (
     ("dipole_command_b", "dipole_{}_A_m2"),
     ("position_e", "{}_itrs_m"),
 )
-_SINGLES = (("temperature_k", "mag_temperature_K"), ("solar_current", "solar_current_A"))
+_SINGLES = (("temperature_k", "mag_temperature_K"), ("solar_current", "solar_current_A"), ("yaw_rad", "yaw_rad"))
 
 
 def telemetry_columns(telemetry: Telemetry) -> dict[str, np.ndarray]:

@@ -64,28 +64,31 @@ def find_layout(path: Path) -> Layout:
     head, packed, whole = _head(path)
     encoding = _encoding(path, head)
     lines = head.decode(encoding, errors="replace").splitlines()
-    if not whole:
-        lines = lines[:-1]  # the last is cut
+    return layout_of(path, lines if whole else lines[:-1], encoding, packed)  # the last is cut
+
+
+def layout_of(path: Path, lines: Sequence[str], encoding: str = "utf-8", packed: bool = False) -> Layout:
+    """The layout that the first lines of a table show; they must hold a sample at least."""
     _refuse_other_texts(path, lines)
-    body = [(number, line) for number, line in enumerate(lines) if line.strip() and not _is_comment(line)]
+    body = [(number, line) for number, line in enumerate(lines) if line.strip() and not is_comment(line)]
     if body and re.match(r"sep=.$", body[0][1].strip()):
         body = body[1:]
     if not body:
         raise InputError(f'telemetry file "{path}" holds no table: there are only comments or blank lines.')
     delimiter = _delimiter([line for _, line in body[:30]])
-    header = _cells(body[0][1], delimiter)
+    header = cells_of(body[0][1], delimiter)
     rows = body[1:]
     if all(_is_number(cell, delimiter) for cell in header):
         rows = body
         header = _header_in_comments(lines[: body[0][0]], delimiter, len(header))
     names = unique_names([cell.strip().lstrip("\ufeff") for cell in header])
     units: dict[str, str] = {}
-    if rows and _is_units_row(_cells(rows[0][1], delimiter)):
-        units = {name: cell.strip(" []()") for name, cell in zip(names, _cells(rows[0][1], delimiter), strict=False)}
+    if rows and _is_units_row(cells_of(rows[0][1], delimiter)):
+        units = {name: cell.strip(" []()") for name, cell in zip(names, cells_of(rows[0][1], delimiter), strict=False)}
         rows = rows[1:]
     if not rows:
         raise InputError(f'telemetry file "{path}" has a header and no samples.')
-    cells = [_cells(line, delimiter) for _, line in rows[:200]]
+    cells = [cells_of(line, delimiter) for _, line in rows[:200]]
     peek = {name: next((row[k] for row in cells if k < len(row) and row[k] not in MISSING), "") for k, name in enumerate(names)}
     comma = delimiter != "," and any(_DECIMAL_COMMA.match(cell) for row in cells for cell in row)
     return Layout(path, encoding, packed, delimiter, "," if comma else ".", names, rows[0][0], units, peek)
@@ -138,11 +141,12 @@ def _encoding(path: Path, head: bytes) -> str:
     return "utf-8-sig"
 
 
-def _is_comment(line: str) -> bool:
+def is_comment(line: str) -> bool:
+    """Whether a line holds no row but a remark."""
     return line.lstrip("\ufeff \t").startswith(_COMMENTS)
 
 
-def _cells(line: str, delimiter: str) -> list[str]:
+def cells_of(line: str, delimiter: str) -> list[str]:
     """The cells of one line, without blanks and quotes around them."""
     if delimiter == " ":
         return [cell.strip('"') for cell in line.split()]
@@ -156,7 +160,7 @@ def _delimiter(lines: Sequence[str]) -> str:
     """The separator that gives the most columns, the same number in most lines; a comma may be a decimal sign."""
     best, chosen = (0.0, 0), ","
     for delimiter in ("\t", ";", "|", ",", " "):
-        counts = [len(_cells(line, delimiter)) for line in lines]
+        counts = [len(cells_of(line, delimiter)) for line in lines]
         agree = counts.count(counts[0]) / len(counts)
         if counts[0] > 1 and (agree > 0.8, counts[0]) > best:
             best, chosen = (agree > 0.8, counts[0]), delimiter
@@ -171,8 +175,8 @@ def _is_number(cell: str, delimiter: str = ",") -> bool:
 
 def _header_in_comments(lines: list[str], delimiter: str, count: int) -> list[str]:
     """The names in the last comment before the numbers, if they fit; else column_1, column_2 … for a mapping to name."""
-    for line in reversed([line for line in lines if _is_comment(line)]):
-        cells = _cells(line.lstrip("\ufeff #%/"), delimiter)
+    for line in reversed([line for line in lines if is_comment(line)]):
+        cells = cells_of(line.lstrip("\ufeff #%/"), delimiter)
         if len(cells) == count and not any(_is_number(cell) for cell in cells):
             return cells
     return [f"column_{k + 1}" for k in range(count)]
@@ -219,9 +223,9 @@ def _rows(layout: Layout) -> Iterator[tuple[int, list[str]]]:
     opener = gzip.open if layout.packed else io.open
     with opener(layout.path, "rt", encoding=layout.encoding, errors="replace", newline="") as file:
         for line_number, line in enumerate(file, start=1):
-            if line_number <= layout.first_line or not line.strip() or _is_comment(line):
+            if line_number <= layout.first_line or not line.strip() or is_comment(line):
                 continue
-            yield line_number, _cells(line.rstrip("\r\n"), layout.delimiter)
+            yield line_number, cells_of(line.rstrip("\r\n"), layout.delimiter)
 
 
 def _line_of(layout: Layout, row: int) -> int:

@@ -86,6 +86,7 @@ UNITS_OF = {
     "sun_sensor": _READING,
     "position": _LENGTH,
     "angle": _ANGLE,
+    "yaw": _ANGLE,
 }
 
 

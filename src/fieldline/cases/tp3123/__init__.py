@@ -3,11 +3,13 @@
 run           section IV: the signals of a flight, corrected and filtered
 fly           the flight alone, at 16 Hz: orbit, field, attitude, magnetometer
 six_dipoles   the field model of its program
+record_along  the motion along any orbit, as telemetry
 listed_gain   gain and phase as its program prints them
 """
 
 from fieldline.cases.tp3123.dipoles import six_dipoles
 from fieldline.cases.tp3123.flight import Flight, fly, true_cone
 from fieldline.cases.tp3123.reconstruction import listed_gain, run
+from fieldline.cases.tp3123.record import FlightRecord, record_along
 
-__all__ = ["run", "fly", "Flight", "true_cone", "six_dipoles", "listed_gain"]
+__all__ = ["run", "fly", "Flight", "true_cone", "six_dipoles", "listed_gain", "record_along", "FlightRecord"]

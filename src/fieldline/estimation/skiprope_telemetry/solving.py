@@ -1,0 +1,240 @@
+"""From rows of a magnetometer and an orbit to the skiprope: one way for a file and for a stream.
+
+rows -> (averaged over seconds) -> calibrated -> axes of the cone; orbit -> known field in the same axes -> estimator
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fieldline.errors import InputError, NoEstimateError, nearest
+from fieldline.estimation.calibrate import calibrate_against, columns_for
+from fieldline.estimation.calibration import Calibration
+from fieldline.estimation.reference import Reference, reference_along_orbit
+from fieldline.estimation.skiprope.signals import ORBITAL_FROM_CONE, SkipropeSignals, skiprope_signals
+from fieldline.estimation.skiprope.solution import SkipropeEstimate, wrapped
+from fieldline.estimation.skiprope_telemetry.mounting import Mounting
+from fieldline.estimation.skiprope_telemetry.plane import Crossings, Plane, next_crossings, plane_of
+from fieldline.orbit import Orbit, orbit_from_positions
+from fieldline.telemetry import telemetry_of
+from fieldline.telemetry.stream import Rows
+
+METHODS = ("bandpass", "harmonic", "kalman")
+LENGTH_M = (1.0, 1e6)
+FREQUENCY_HZ = (1e-5, 10.0)
+FASTEST_AVERAGED_HZ = 0.06  # a quicker cone keeps all of its samples
+FEWEST = 30
+LARGEST_MISFIT_DEG = 30.0  # between measured and known direction, in the median
+LARGEST_SHARE = 0.3  # of the field's size
+
+
+@dataclass(frozen=True, kw_only=True)
+class SkipropeSettings:
+    """What an estimate is told. frequency_hz None: found from the spectrum. calibration: "none", "auto", "bias", "full",
+    or a Calibration. use_yaw: whether a measured yaw is used.
+    """
+
+    tether_length_m: float
+    frequency_hz: float | None = None
+    method: str = "harmonic"
+    model: Any = "IGRF-14"
+    mounting: Mounting = field(default_factory=Mounting)
+    plane: Any = "field"
+    calibration: Any = "none"
+    use_yaw: bool = True
+
+    def __post_init__(self):
+        _check_number("tether_length_m", self.tether_length_m, LENGTH_M, "m")
+        if self.frequency_hz is not None:
+            _check_number("frequency_hz", self.frequency_hz, FREQUENCY_HZ, "Hz")
+        if self.method not in METHODS:
+            raise InputError(f'method "{self.method}" is not known; {nearest(str(self.method), METHODS)}')
+        if not isinstance(self.calibration, Calibration) and self.calibration not in ("none", "auto", "bias", "full"):
+            raise InputError(f"calibration must be none, auto, bias, full or a Calibration; got {self.calibration!r}.")
+        plane_of(self.plane)
+
+    @property
+    def averages(self) -> bool:
+        """Whether rows that come fast are averaged over seconds."""
+        return self.frequency_hz is None or self.frequency_hz < FASTEST_AVERAGED_HZ
+
+    def described(self) -> dict:
+        """For the record, plain types."""
+        calibration = self.calibration.summary() if isinstance(self.calibration, Calibration) else self.calibration
+        return {
+            "tether_length_m": float(self.tether_length_m),
+            "frequency_hz": None if self.frequency_hz is None else float(self.frequency_hz),
+            "method": self.method,
+            "model": self.model if isinstance(self.model, str) else self.model.name,
+            "plane": plane_of(self.plane).word,
+            "calibration": calibration,
+            "use_yaw": self.use_yaw,
+            **self.mounting.described(),
+        }
+
+
+class HalfTurned(NamedTuple):
+    """Azimuth [rad] (m,) and place [m] (m, 2) of the tether's middle, on the side on which the tether is."""
+
+    plane_rad: np.ndarray
+    position_m: np.ndarray
+
+
+class Solved(NamedTuple):
+    """An estimate with all that it was made of."""
+
+    rows: Rows
+    reference: Reference
+    calibration: Calibration | None
+    signals: SkipropeSignals
+    estimate: SkipropeEstimate
+    plane: Plane
+    crossings: Crossings
+    yaw_used: bool
+    remarks: tuple[str, ...]
+    half_turned: HalfTurned
+
+
+def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, report=None) -> Solved:
+    """The skiprope of rows in rising time; the orbit is that of their own positions where None is given.
+
+    Errors: InputError for input that cannot be used; NoEstimateError where there is too little of it.
+    """
+    from fieldline.estimation.skiprope.estimate import estimate_skiprope
+
+    report = report or (lambda stage, done, total, words="": None)
+    good = np.isfinite(rows.field_s).all(axis=1)
+    if good.sum() < FEWEST:
+        raise NoEstimateError(
+            f"only {int(good.sum())} samples with a field, and {FEWEST} are needed at least. Give a longer record."
+        )
+    report("field", 0, 1, "")
+    orbit = orbit or _own_orbit(rows)
+    rows = rows.where(orbit.covers(rows.time_utc) if orbit.kind == "positions" else slice(None))
+    reference = reference_along_orbit(rows.time_utc, orbit, settings.model)
+    report("field", 1, 1, f"{reference.model} along {reference.orbit['kind']}")
+    calibration, field_s = _calibrated(rows, reference, settings)
+    yaw_used = settings.use_yaw and bool(np.isfinite(rows.yaw_rad).any())
+    yaw = _whole(rows) if yaw_used else None
+    measured, known = settings.mounting.field_c(field_s, yaw), _known(reference)
+    remarks = (*_judge_size(measured, known), *_judge_direction(field_s, measured, known, yaw, settings))
+    seconds = (rows.time_utc - rows.time_utc[0]).astype(np.int64) * 1e-9
+    signals = skiprope_signals(seconds, measured, known)
+    report(settings.method, 0, 1, "")
+    estimate = estimate_skiprope(
+        signals,
+        tether_length_m=float(settings.tether_length_m),
+        frequency_hz=settings.frequency_hz,
+        method=settings.method,
+        yaw_rad=np.zeros(len(signals.seconds)) if yaw_used else None,  # the measured one is taken out already
+    )
+    plane = plane_of(settings.plane)
+    crossings = next_crossings(estimate, signals, plane, settings.mounting.half_turn_rad)
+    report(settings.method, 1, 1, f"{len(estimate.seconds)} rows" if estimate.detected else "nothing found")
+    turned = _half_turned(estimate, settings.mounting)
+    return Solved(rows, reference, calibration, signals, estimate, plane, crossings, yaw_used, remarks, turned)
+
+
+def _half_turned(estimate: SkipropeEstimate, mounting: Mounting) -> HalfTurned:
+    """The estimate takes the tether's middle half a turn from the lean; where the tether goes up it is on the lean's side."""
+    if mounting.half_turn_rad:
+        return HalfTurned(estimate.plane_rad, estimate.position_m)
+    return HalfTurned(wrapped(estimate.plane_rad + np.pi), -estimate.position_m)
+
+
+def _own_orbit(rows: Rows) -> Orbit:
+    """The orbit through the rows' own positions."""
+    if not np.isfinite(rows.position_e).any():
+        raise InputError("no orbit: the telemetry has no position columns either. Give a TLE, OMM or OEM file (--orbit).")
+    return orbit_from_positions(rows.time_utc, rows.position_e)
+
+
+def _known(reference: Reference) -> np.ndarray:
+    """(n, 3) [T] the model's field in the axes of the cone."""
+    from fieldline.frames.orbital import dcm_oi
+
+    return np.einsum("nij,nj->ni", dcm_oi(reference.position_i, reference.velocity_i), reference.field_i) @ ORBITAL_FROM_CONE
+
+
+def _calibrated(rows: Rows, reference: Reference, settings: SkipropeSettings) -> tuple[Calibration | None, np.ndarray]:
+    """The calibration that was given or found, and the field (n, 3) [T] in sensor axes."""
+    if isinstance(settings.calibration, str) and settings.calibration == "none":
+        return None, rows.field_s
+    telemetry = telemetry_of(rows.time_utc, rows.field_s)
+    found = settings.calibration
+    if not isinstance(found, Calibration):
+        found = calibrate_against([telemetry], [reference], calibration=found, use=())[0]
+    columns = columns_for(found, telemetry, reference)
+    return found, found.apply(telemetry.seconds, telemetry.field_s, epoch_utc=telemetry.epoch_utc, **columns)
+
+
+def _whole(rows: Rows) -> np.ndarray:
+    """(n,) [rad] the measured yaw, carried over rows without one."""
+    good = np.isfinite(rows.yaw_rad)
+    ns = (rows.time_utc - rows.time_utc[0]).astype(np.int64)
+    return np.interp(ns, ns[good], np.unwrap(rows.yaw_rad[good]))
+
+
+def _judge_size(measured: np.ndarray, known: np.ndarray) -> tuple[str, ...]:
+    """Remarks on the size of the measured field; NoEstimateError where it cannot be the known one's."""
+    b, known_b = np.linalg.norm(measured, axis=1), np.linalg.norm(known, axis=1)
+    ratio = b / known_b
+    share = float(np.nanmedian(np.abs(ratio - 1.0)))
+    if share > LARGEST_SHARE:
+        raise NoEstimateError(
+            f"No estimate: the measured field is {np.nanmedian(ratio):.2f} times the model's in the median, off by "
+            f"{100 * share:.0f} %. Check the unit, the time stamps (UTC), the orbit; a biased magnetometer is mended by "
+            "--calibration bias, or a file of `fieldline calibrate`."
+        )
+    spread = float(np.nanstd(ratio))
+    if spread > 0.03:
+        return (
+            f"The measured field's size scatters by {100 * spread:.0f} % about the model's: the magnetometer is not calibrated, "
+            "or the orbit is not its own. Try --calibration bias.",
+        )
+    return ()
+
+
+def _judge_direction(field_s, measured, known, yaw, settings: SkipropeSettings) -> tuple[str, ...]:
+    """NoEstimateError where the measured direction is nowhere near the known one, with the axes that would fit."""
+    off = _off_deg(measured, known)
+    if off <= LARGEST_MISFIT_DEG:
+        if off > 10.0:
+            return (f"Measured and known direction of the field are {off:.0f} deg apart in the median: is --attitude-deg right?",)
+        return ()
+    best, words = off, ""
+    for axes in _all_axes():
+        turned = Mounting(sensor_axes=axes, attitude_deg=settings.mounting.attitude_deg).field_c(field_s, yaw)
+        if (angle := _off_deg(turned, known)) < best:
+            best, words = angle, axes
+    hint = f' With --sensor-axes="{words}" it would be {best:.0f} deg.' if best < 0.5 * off and best <= LARGEST_MISFIT_DEG else ""
+    raise NoEstimateError(
+        f"No estimate: the measured field points {off:.0f} deg away from the known one in the median. Check that the satellite "
+        f"points at the Earth as --attitude-deg says, the sensor's axes, the time stamps (UTC) and the orbit.{hint}"
+    )
+
+
+def _off_deg(measured: np.ndarray, known: np.ndarray) -> float:
+    """[deg] median angle between rows."""
+    turned = np.linalg.norm(np.cross(measured, known), axis=1)
+    return float(np.degrees(np.nanmedian(np.arctan2(turned, np.sum(measured * known, axis=1)))))
+
+
+def _all_axes():
+    """The twenty-four ways in which axes can be swapped and turned."""
+    for order in itertools.permutations("xyz"):
+        for signs in itertools.product(("", "-"), repeat=3):
+            words = ",".join(sign + axis for sign, axis in zip(signs, order, strict=True))
+            even = "".join(order) in "xyzxy"
+            if (signs.count("-") % 2 == 0) == even:
+                yield words
+
+
+def _check_number(name: str, value, within: tuple[float, float], unit: str) -> None:
+    """Refuse what is no number within the range."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not within[0] <= value <= within[1]:
+        raise InputError(f"{name} must be a number from {within[0]:g} to {within[1]:g} {unit}; got {value!r}.")
