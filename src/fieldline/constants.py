@@ -16,6 +16,11 @@ WGS84_FLATTENING = 1.0 / 298.257223563  # [WGS84]
 IGRF_REFERENCE_RADIUS_M = 6371200.0  # [IGRF] the sphere on which Gauss coefficients are given
 
 MU0_OVER_4PI = 1.0e-7  # [CODATA] T m/A, true to 6e-10 since 2019
+ELEMENTARY_CHARGE_C = 1.602176634e-19  # [CODATA] exact
+ELECTRON_MASS_KG = 9.1093837015e-31  # [CODATA]
+ATOMIC_MASS_KG = 1.66053906660e-27  # [CODATA] unified atomic mass unit
+STEFAN_BOLTZMANN_W_M2_K4 = 5.670374419e-8  # [CODATA] exact, rounded
+SOLAR_CONSTANT_W_M2 = 1361.0  # [IAU] nominal, at one astronomical unit
 
 ASTRONOMICAL_UNIT_M = 149597870700.0  # [IAU]
 SUN_RADIUS_M = 6.957e8  # [IAU] nominal
