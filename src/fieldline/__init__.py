@@ -34,6 +34,7 @@ _HOMES = {
     "electrodynamic_map": "fieldline.control.electrodynamic",
     "simulate": "fieldline.simulate",
     "simulate_many": "fieldline.simulate",
+    "line_shape": "fieldline.simulate.line_shape",
     "Normal": "fieldline.simulate",
     "Uniform": "fieldline.simulate",
     "Choice": "fieldline.simulate",
@@ -64,6 +65,7 @@ __all__ = [
     "Normal",
     "Uniform",
     "Choice",
+    "line_shape",
     "Scenario",
     "FieldlineError",
     "InputError",
@@ -80,6 +82,7 @@ if TYPE_CHECKING:
     from fieldline.orbit import orbit_from_positions, read_orbit
     from fieldline.report import write_report
     from fieldline.simulate.ensemble import Choice, Normal, Uniform, simulate_many
+    from fieldline.simulate.line_shape import line_shape
     from fieldline.simulate.run import simulate
     from fieldline.simulate.scenario import Scenario
     from fieldline.telemetry import Telemetry, read_telemetry
