@@ -12,7 +12,7 @@ point masses fixed in the bodies there; `EndMass` of a body gathers them,
     M a + alpha x S = F - omega x (omega x S),    (I + J) alpha + S x a = N - omega x ((I + J) omega)        (3)
     S = sum m p,    J = sum m (p^2 E - p p^T),    M = m_body + sum m + what the reel holds
 
-with F, N of everything, the weight of the end masses included. The reel's equations are in `fieldline.dynamics.lines.reel`.
+with F, N of everything, the weight of the end masses included. The reel's equations are in `fieldline.dynamics.lines.feed`.
 
 Source: the discretisation is that of SKYHOOK (Kalaghan et al. 1978; Smithsonian Astrophysical Observatory 1982, s. 3.2).
 """
@@ -23,7 +23,7 @@ from math import sqrt
 
 from fieldline.compiled import inner, merged
 from fieldline.dynamics.layout import NOTHING, attitude_at, feeds_at, nodes_at, store, temperatures_at, three
-from fieldline.dynamics.lines.reel import feed_acceleration, reel_push
+from fieldline.dynamics.lines.feed import feed_acceleration, feed_loads, passage_push
 from fieldline.dynamics.lines.segment_loads import segment_load
 from fieldline.dynamics.load_log import LINES, impose
 from fieldline.dynamics.loads.joint import joint_torque
@@ -109,9 +109,11 @@ def unstretched(j, k, z, feed, warm, lines):
 
 
 @inner
-def load_end(b, mass, point_b, pull_i, weight_i, q, log, outer, end_mass):
-    """An end's pull [N] and its half segment [kg] on body b."""
+def load_end(b, mass, point_b, slide_b, pull_i, weight_i, q, omega_b, log, outer, end_mass):
+    """An end's pull [N] and its half segment [kg] on body b; one that slides at a rate [m/s] has its Coriolis force."""
     force_i = axpy(mass, weight_i, pull_i)
+    if slide_b != NOTHING:
+        force_i = add(force_i, to_inertial(q, scale(-2.0 * mass, cross(omega_b, slide_b))))
     impose(log, LINES, b, force_i, cross(point_b, to_body(q, force_i)), outer)
     if mass > 0.0:
         gather(b, mass, point_b, end_mass)
@@ -122,6 +124,15 @@ def damp_joint(b, beta, point_b, q, omega_b, chord_i, chord_rate_i, log, outer):
     """Angular damping where a taut line is attached."""
     torque_i = joint_torque(to_inertial(q, point_b), to_inertial(q, omega_b), chord_i, chord_rate_i, beta)
     impose(log, LINES, b, NOTHING, to_body(q, torque_i), outer)
+
+
+@inner
+def carry_to_attachment(b, gone, moving, point_b, place, speed, q, z, dcm_ei, surroundings, log, outer):
+    """Loads on a reel's body b for the line that has left its middle [kg], and for what moves to the attachment (mu u, mu u')."""
+    r, v = three(z, TANGENT * b), three(z, TANGENT * b + 3)
+    impose(log, LINES, b, scale(-gone, weight_per_mass(r, dcm_ei, surroundings)), NOTHING, outer)
+    push = passage_push(sub(place, r), sub(speed, v), moving)
+    impose(log, LINES, b, push, cross(scale(0.5, point_b), to_body(q, push)), outer)
 
 
 @merged
@@ -184,9 +195,8 @@ def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
         out[feed + 1] = feed_acceleration(lines.reel[k], inputs.reel[k], z[feed + 1], tension, lines.reel_lag[k])
         last, last_rate = (place_a, speed_a) if nodes == 0 else (three(z, base + 6 * nodes - 6), three(z, base + 6 * nodes - 3))
         linear_mass = lines.linear_mass[row + nodes]
-        on_node, on_reel = reel_push(
-            sub(last, place_b), sub(last_rate, speed_b), z[feed], z[feed + 1], out[feed + 1], linear_mass
-        )
+        chord, chord_rate = sub(last, place_b), sub(last_rate, speed_b)
+        on_node, on_reel = feed_loads(chord, chord_rate, z[feed], z[feed + 1], out[feed + 1], linear_mass)
         end_b = add(end_b, on_reel)
         if nodes == 0:
             end_a = add(end_a, on_node)
@@ -194,11 +204,14 @@ def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
             mass = half + 0.5 * lines.linear_mass[row + nodes - 1] * lines.rest[row + nodes - 1]
             at = base + 6 * nodes - 3
             store(out, at, axpy(1.0 / mass, on_node, three(out, at)))
-        shared.end_mass[b, 0] -= mass_out - lines.stored[k]
+        gone = mass_out - lines.stored[k]
+        moving = linear_mass * z[feed + 1], linear_mass * out[feed + 1]
+        carry_to_attachment(b, gone, moving, point_b, place_b, speed_b, q_b, z, dcm_ei, surroundings, log, outer)
+        shared.end_mass[b, 0] -= gone
     weight_a = weight_per_mass(place_a, dcm_ei, surroundings) if mass_a > 0.0 else NOTHING
     weight_b = weight_per_mass(place_b, dcm_ei, surroundings) if half > 0.0 else NOTHING
-    load_end(a, mass_a, point_a, end_a, weight_a, q_a, log, outer, shared.end_mass)
-    load_end(b, half, point_b, end_b, weight_b, q_b, log, outer, shared.end_mass)
+    load_end(a, mass_a, point_a, slide_a, end_a, weight_a, q_a, three(z, TANGENT * a + 9), log, outer, shared.end_mass)
+    load_end(b, half, point_b, slide_b, end_b, weight_b, q_b, three(z, TANGENT * b + 9), log, outer, shared.end_mass)
 
 
 @inner

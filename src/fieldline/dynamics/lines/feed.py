@@ -10,23 +10,28 @@ segment is, and its velocity runs evenly to the node's v1. Through the segment's
     R = mu u V_B - (mu u/2) v_out - (mu u/4)(v_out + v1) - (mu l/2) d((u/l) d)/dt
       = -(mu/4)((u^2/l + 2 u') d + 3 u w)                                                                      (3)
 
-so that M V_B + (mu l/2) v_out + m1 v1 + ... changes by what acts from outside alone, paying out or reeling in, and equals
-the rate of the first moment sum(m r). Line fed straight and evenly has w = (u/l) d: nothing on the node, and
+so that M V_B + (mu l/2) v_out + m1 v1 + ... changes by what acts from outside alone, paying out or reeling in, and is the
+rate of the first moment sum(m r). Line fed straight and evenly has w = (u/l) d: nothing on the node, and
 R = -mu u^2 d/l, the force that sets the material going.
+
+The line on the reel is at the centre of mass of the body, V there, and runs straight from there to the attachment at p,
+with the momentum mu u p. That asks for one more force on the body, in the middle of the way:
+
+    F = -d(mu u p)/dt - mu u (V_B - V) = -mu (u' p + 2 u p'),   p' = V_B - V,    at p/2                        (4)
 
 A rate follows its command, or the tension of the last segment does:
 
-    u' = (u_c - u) / lag            u' = (T - T_c) / m_reel                                                    (4)
+    u' = (u_c - u) / lag            u' = (T - T_c) / m_reel                                                    (5)
 
 Where l has grown beyond `APPEAR` of a full segment h, a node appears at the unstretched distance h from the last one:
 
-    d1 = (1 - h/l) d,   w1 = w + (h/l)((u/l) d - w),   l1 = l - h                                              (5)
+    d1 = (1 - h/l) d,   w1 = w + (h/l)((u/l) d - w),   l1 = l - h                                              (6)
 
 Both pieces then have the strain and the rate of strain of the whole, so no tension jumps, and momentum and first moment
 are what they were. Where l has shrunk below `VANISH` of it, the last node n (d_n, w_n) gives way to the one before
 it (d, w) at the unstretched distance r from it:
 
-    T = (r T_1 + l T_2) / (r + l),   l1 = |d| / (1 + T / E A)                                                  (6)
+    T = (r T_1 + l T_2) / (r + l),   l1 = |d| / (1 + T / E A)                                                  (7)
 
 the tension of the new piece is the mean of the two (what a bent piece is longer than its chord goes into the reel; where
 either is slack, l1 = r + l). The momentum that the straight piece cannot carry goes to its ends by the lever rule. The
@@ -49,7 +54,7 @@ APPEAR, VANISH = 1.5, 0.4  # of a full segment; what appears leaves 0.5 behind, 
 
 @kernel
 def feed_acceleration(kind, command, rate, tension, lag):
-    """u' [m/s^2] of (4); `lag` is the time constant [s] of a rate, or the effective mass [kg] of a reel by tension."""
+    """u' [m/s^2] of (5); `lag` is the time constant [s] of a rate, or the effective mass [kg] of a reel by tension."""
     return (command - rate) / lag if kind == RATE_REEL else (tension - command) / lag
 
 
@@ -63,6 +68,12 @@ def feed_loads(chord, chord_rate, length, rate, acceleration, linear_mass):
 
 
 @kernel
+def passage_push(arm, arm_rate, moving):
+    """Force [N] of (4); arm p [m] and p' [m/s], inertial axes; moving: mu u [kg/s] and mu u' [kg/s^2]."""
+    return scale(-1.0, axpy(moving[1], arm, scale(2.0 * moving[0], arm_rate)))
+
+
+@kernel
 def piece_momentum(linear_mass, length, rate, chord, chord_rate):
     """Momentum [N s] of a last segment against the reel: halves of it at w and at (u/l) d."""
     return scale(0.5 * linear_mass, axpy(rate, chord, scale(length, chord_rate)))
@@ -70,7 +81,7 @@ def piece_momentum(linear_mass, length, rate, chord, chord_rate):
 
 @kernel
 def insert_node(chord, chord_rate, length, rate, spacing, stiffness, linear_mass):
-    """(d1, w1, l1, momentum left over [N s]) of the node that appears; equation (5).
+    """(d1, w1, l1, momentum left over [N s]) of the node that appears; equation (6).
 
     stiffness, linear_mass: of the piece before the node and of the one after it, pairs. Where they differ, l1 is what has
     the same elastic tension, and what momentum is left over is the reel's body's.
@@ -96,7 +107,7 @@ def pull(chord, length, stiffness):
 
 @kernel
 def remove_node(chord, chord_rate, node, node_rate, spacing, length, rate, stiffness, linear_mass):
-    """(l1, momenta [N s] for the node before and for the reel's body) where a node vanishes; equation (6).
+    """(l1, momenta [N s] for the node before and for the reel's body) where a node vanishes; equation (7).
 
     chord, chord_rate: d, w of the node before; node, node_rate: of the one that vanishes; spacing: r between them; length: l.
     stiffness, linear_mass: of the pieces before and after it, pairs; the new piece is made of the first.
