@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
 from fieldline.frames.geodetic import geodetic_kernel
+from textbook_line import TextbookLine
 
 GM, RADIUS, J2 = 3.986004418e14, 6378136.6, 1.0826359e-3
 SPIN = 7.292115e-5
@@ -27,18 +28,20 @@ class Textbook:
     def __init__(self, flight, t, y):
         self.scenario, self.t, self.y = flight.scenario, t, np.array(y)
         self.inputs = flight.inputs
+        self.nodes_out = flight.plant.lines.nodes
         self.ei = np.reshape(dcm_ei_kernel(t, flight.plant.surroundings.ephemeris), (3, 3))
         self.later = np.reshape(dcm_ei_kernel(t + 1.0, flight.plant.surroundings.ephemeris), (3, 3))
         self.sun = np.array(sun_kernel(t, flight.plant.surroundings.ephemeris))
         self.rows = self.y[: 13 * len(self.scenario.body)].reshape(-1, 13)
         self.tail = self.y[13 * len(self.scenario.body) :]
         self.loads = [{} for _ in self.rows]
+        self.end_masses = [[] for _ in self.rows]  # (mass, place in the body) of lines' ends; None: at its centre
         self.extra = np.zeros(len(self.tail))
         self.gyro = np.zeros((len(self.rows), 3))
         self._work()
 
     def _work(self):
-        torquer = wheel = thruster = rod = 0
+        torquer = wheel = thruster = rod = conductor = 0
         wheels = sum(len(b.wheel) for b in self.scenario.body)
         for b, record in enumerate(self.scenario.body):
             r, v, turn, omega = self.rows[b, :3], self.rows[b, 3:6], Rotation.from_quat(self.rows[b, 6:10]), self.rows[b, 10:13]
@@ -48,6 +51,11 @@ class Textbook:
                 force = self.inputs.thrust[k] * one.force_n * np.array(one.direction_b)
                 self._add(b, "thrusters", turn.apply(force), np.cross(one.position_b_m, force))
             thruster += len(record.thruster)
+            for k, one in enumerate(record.conductor, conductor):
+                wire = one.length_m * np.array(one.direction_b)
+                force = self.inputs.current[k] * np.cross(wire, turn.inv().apply(self.field(r, self.ei)))
+                self._add(b, "conductors", turn.apply(force), np.cross(one.position_b_m, force))
+            conductor += len(record.conductor)
             if record.kind == "point":
                 continue
             inertia = tensor(record.inertia_kg_m2)
@@ -80,13 +88,7 @@ class Textbook:
         self.loads[b][name] = (old[0] + force, old[1] + torque)
 
     def _outside(self, b, record, r, v, turn):
-        distance = np.linalg.norm(r)
-        g = -GM * r / distance**3
-        if self.scenario.environment.gravity == "j2":
-            pole = self.ei[2]
-            z = r @ pole
-            g -= 1.5 * J2 * GM * RADIUS**2 / distance**5 * ((1 - 5 * z**2 / distance**2) * r + 2 * z * pole)
-        self._add(b, "gravity", record.mass_kg * g, np.zeros(3))
+        self._add(b, "gravity", record.mass_kg * self.pull(r), np.zeros(3))
         if record.drag is not None:
             wind = v - np.cross(SPIN * self.ei[2], r)
             air = self.scenario.environment.atmosphere
@@ -100,6 +102,16 @@ class Textbook:
             pressure = SOLAR_CONSTANT / LIGHT * (AU / np.linalg.norm(away)) ** 2
             force = self.sunlit(r) * pressure * light.reflectivity_coefficient * light.area_m2 * away / np.linalg.norm(away)
             self._add(b, "solar_pressure", force, np.cross(light.center_of_pressure_b_m, turn.inv().apply(force)))
+
+    def pull(self, r):
+        """Gravity at a place [m/s^2]."""
+        distance = np.linalg.norm(r)
+        g = -GM * r / distance**3
+        if self.scenario.environment.gravity == "j2":
+            pole = self.ei[2]
+            z = r @ pole
+            g = g - 1.5 * J2 * GM * RADIUS**2 / distance**5 * ((1 - 5 * z**2 / distance**2) * r + 2 * z * pole)
+        return g
 
     def sunlit(self, r):
         """Share of the Sun's disc that is not behind the Earth's, by areas of circular segments."""
@@ -143,23 +155,22 @@ class Textbook:
         self._add(b, "hysteresis", np.zeros(3), np.cross(b_rod * one.volume_m3 / MU0 * axis, field))
 
     def _lines(self):
-        for line in self.scenario.line:
-            ends = []
-            for name, point in ((line.from_body, line.from_point_b_m), (line.to_body, line.to_point_b_m)):
-                b = self.scenario.index_of(name)
-                turn = Rotation.from_quat(self.rows[b, 6:10])
-                arm = turn.apply(point)
-                ends.append(
-                    (b, turn, arm, self.rows[b, :3] + arm, self.rows[b, 3:6] + np.cross(turn.apply(self.rows[b, 10:13]), arm))
-                )
-            chord = ends[1][3] - ends[0][3]
-            length = np.linalg.norm(chord)
-            strain = length / line.rest_length_m - 1.0
-            rate = chord @ (ends[1][4] - ends[0][4]) / length / line.rest_length_m
-            tension = max(0.0, line.stiffness_n * strain + line.damping_n_s * rate) if strain > 0 else 0.0
-            for (b, turn, arm, *_), sign in zip(ends, (1.0, -1.0), strict=True):
-                force = sign * tension * chord / length
-                self._add(b, "lines", force, turn.inv().apply(np.cross(arm, force)))
+        """Every line of the scenario: see `textbook_line`."""
+        wheels = sum(len(b.wheel) for b in self.scenario.body)
+        rods = sum(len(b.hysteresis_rod) for b in self.scenario.body)
+        nodes = wheels + rods
+        feeds = nodes + 6 * sum(line.nodes for line in self.scenario.line)
+        slider = 0
+        for k, line in enumerate(self.scenario.line):
+            one = TextbookLine(self, k, line, nodes, feeds + 2 * k, slider)
+            for b, force, torque in one.on_bodies:
+                self._add(b, "lines", force, torque)
+            for b, mass, point in one.end_masses:
+                self.end_masses[b].append((mass, point))
+            self.extra[nodes : nodes + one.rates.size] = one.rates
+            self.extra[feeds + 2 * k : feeds + 2 * k + 2] = one.feed_rates
+            nodes += 6 * line.nodes
+            slider += len(line.slider)
 
     def _user(self):
         import user_functions
@@ -170,15 +181,39 @@ class Textbook:
                 six = getattr(function, "py_func", function)(self.t, self.rows[b], list(one.parameters.values()))
                 self._add(b, "user", np.array(six[:3]), np.array(six[3:]))
 
+    def _burdened(self, b, record, force, torque):
+        """Newton and Euler for a body and the point masses fixed in it, column by column of the 6 x 6 mass matrix, body axes."""
+        turn, omega, inertia = Rotation.from_quat(self.rows[b, 6:10]), self.rows[b, 10:13], tensor(record.inertia_kg_m2)
+        moved = record.mass_kg + sum(mass for mass, point in self.end_masses[b] if point is None)
+        points = [(mass, np.array(point)) for mass, point in self.end_masses[b] if point is not None]
+        columns = []
+        for unit in np.eye(6):
+            a, alpha = unit[:3], unit[3:]
+            pushes = [mass * (a + np.cross(alpha, point)) for mass, point in points]
+            levers = [np.cross(point, push) for (_, point), push in zip(points, pushes, strict=True)]
+            columns.append(np.concatenate([moved * a + sum(pushes), inertia @ alpha + sum(levers)]))
+        inward = [mass * np.cross(omega, np.cross(omega, point)) for mass, point in points]
+        force = turn.inv().apply(force) - sum(inward)
+        torque = torque - sum(np.cross(point, f) for (_, point), f in zip(points, inward, strict=True))
+        both = np.linalg.solve(
+            np.array(columns).T, np.concatenate([force, torque - np.cross(omega, inertia @ omega + self.gyro[b])])
+        )
+        return turn.apply(both[:3]), both[3:]
+
     def rates(self):
         """dz/dt with sigma = 0: velocity, acceleration, rate, angular acceleration; wheels and rods."""
         out = []
         for b, record in enumerate(self.scenario.body):
             force = sum(f for f, _ in self.loads[b].values())
-            out += [*self.rows[b, 3:6], *(force / record.mass_kg)]
             if record.kind == "point":
-                out += [0.0] * 6
+                out += [*self.rows[b, 3:6], *(force / (record.mass_kg + sum(m for m, _ in self.end_masses[b]))), *np.zeros(6)]
                 continue
+            if self.end_masses[b]:
+                torque = sum(n for _, n in self.loads[b].values())
+                along, turning = self._burdened(b, record, force, torque)
+                out += [*self.rows[b, 3:6], *along, *self.rows[b, 10:13], *turning]
+                continue
+            out += [*self.rows[b, 3:6], *(force / record.mass_kg)]
             torque = sum(n for _, n in self.loads[b].values())
             omega, inertia = self.rows[b, 10:13], tensor(record.inertia_kg_m2)
             whole = inertia @ omega + self.gyro[b]
