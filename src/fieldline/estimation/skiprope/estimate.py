@@ -1,8 +1,8 @@
 """From signals to a skiprope, by one of several methods, or the word that there is none.
 
 1. `detect` says whether there is a cone and at which frequency, unless a first frequency is given.
-2. The method finds phasors over time: "harmonic" by least squares in windows (`harmonic`), "bandpass" by the rules of
-   TP-3123 (`reading`).
+2. The method finds phasors over time: "harmonic" by least squares in windows (`harmonic`), "kalman" by a filter that
+   hears each sample once (`by_kalman`), "bandpass" by the rules of TP-3123 (`reading`).
 3. The yaw turns them to (U, V). A magnetometer sees yaw a3 and azimuth error d of the known field as one, s = a3 + d. Of a
    measured yaw only its own error remains: the phasors lie along the body's axes, and no azimuth of the field is needed. Else
    the share that is yaw follows from how large either is wont to be,
@@ -25,6 +25,7 @@ from fieldline.errors import InputError, NoEstimateError, nearest
 from fieldline.estimation.skiprope.bandpass import positive
 from fieldline.estimation.skiprope.by_bandpass import bandpass_track
 from fieldline.estimation.skiprope.by_harmonic import harmonic_track
+from fieldline.estimation.skiprope.by_kalman import kalman_track
 from fieldline.estimation.skiprope.reading import FieldKnowledge
 from fieldline.estimation.skiprope.rotary import BAND_HZ, Detection, Line, detect
 from fieldline.estimation.skiprope.signals import SkipropeSignals
@@ -32,7 +33,7 @@ from fieldline.estimation.skiprope.solution import SkipropeEstimate, derived
 from fieldline.estimation.skiprope.track import Track
 from fieldline.estimation.skiprope.words import none_of, notes_of, verdict_of
 
-METHODS = ("harmonic", "bandpass")
+METHODS = ("harmonic", "kalman", "bandpass")
 RULES = ("paper", "corrected")
 USUAL = FieldKnowledge(scale=0.03, elevation_rad=np.radians(2.0), azimuth_rad=np.radians(2.0))
 YAW_STD_RAD = np.radians(5.0)  # of a body that keeps its yaw near zero
@@ -78,7 +79,7 @@ def estimate_skiprope(
     signals : of `skiprope_signals`, (n,) samples.
     tether_length_m : length [m] of the tether between the two bodies.
     frequency_hz : a first frequency [Hz]; found from the spectrum by default, within `band_hz` (low, high) [Hz].
-    method : "harmonic" or "bandpass".
+    method : "harmonic", "kalman" or "bandpass".
     yaw_rad : the body's yaw a3 as measured, one number or (n,) [rad], with its deviation `yaw_std_rad` (0.5 deg). Without it,
         yaw_std_rad is how far the yaw is wont to be from zero (5 deg).
     knowledge : standard deviations of the known field (3 %, 2 deg, 2 deg).
@@ -139,7 +140,7 @@ def estimate_skiprope(
     )
 
 
-TRACKS = {"harmonic": harmonic_track, "bandpass": bandpass_track}
+TRACKS = {"harmonic": harmonic_track, "kalman": kalman_track, "bandpass": bandpass_track}
 
 
 def _shared(track: Track, yaw_std: float, azimuth_std: float) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,9 @@ threshold x with
     P = 1 - F(x)^N,     F the distribution of chi-squared of 4 K                                                    (3)
 
 What the known field does within a short record is not smooth in frequency: a line with fewer than six periods must have
-0.06 deg besides. What turns is told from what swings by the share of the power in which the two parts differ; the pendulous motion of TP-3123
+0.06 deg besides.
+
+What turns is told from what swings by the share of the power in which the two parts differ; the pendulous motion of TP-3123
 swings in a plane. Lines above the band asked for are never taken for the cone: they are listed as other motions.
 """
 

@@ -125,7 +125,7 @@ def derived(phasor, covariance, sense, yaw_rad, yaw_std_rad, tether_length_m: fl
     amplitude, sign = size[k, main], np.where(main == 0, 1.0, -1.0)
     # rows of the Jacobian of Re c+, Im c+, Re c-, Im c- by Re z1, Im z1, Re z2, Im z2
     by_parts = 0.5 * np.array([[1, 0, 0, -1], [0, 1, 1, 0], [1, 0, 0, 1], [0, 1, -1, 0]], dtype=float)
-    unit = parts / np.maximum(size, 1e-300)
+    unit = np.exp(1j * np.angle(parts))
     radial = np.zeros((len(phasor), 2, 4))
     for j in range(2):
         radial[:, j] = unit[:, j, None].real * by_parts[2 * j] + unit[:, j, None].imag * by_parts[2 * j + 1]

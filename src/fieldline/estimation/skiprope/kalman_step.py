@@ -1,0 +1,266 @@
+"""A Kalman filter for the cone, one sample at a time: a pure kernel on a memory array, for ground and on board.
+
+The measured direction is the known one turned by three angles, each slow, with the cone and a second motion on the first two,
+
+    b / |b| = C1(a1) C2(a2) C3(a3) B / |B| + noise,   ak = sk + Re zk + Re pk (k = 1, 2),   a3 = s3               (1)
+
+(3-2-1, as the paper's simulation; exact, nothing is taken small). The state, 16 numbers:
+
+    s1 s2 s3, their rates         what the body stands askew, and whatever the known field's direction is off, along the orbit:
+                                  s'' = -2 z v s' - v^2 s + white noise, v about the orbit's rate, z = 0.7        (2)
+    z1, z2, w                     the cone: z' = i w z + noise, so that ellipse, size and frequency may change      (3)
+    p1, p2, wp                    the same for the pendulous motion
+
+Two numbers of a sample are used, across the predicted direction; its magnitude is not. Noise is the magnetometer's over |b|,
+and a white share of the known field's direction error. A sample further off than `GATE` deviations is passed over. The mean
+of its normalised square innovations over some two periods tells whether the filter still follows: 1 where it is consistent.
+
+Between samples the state is carried exactly for a steady w; the covariance to first order in w. Covariance updates keep
+it symmetric by construction (one triangle is computed and copied).
+
+`memory` and `params` are flat float arrays, so that a law may own them (`SIZE`, `PARAMETERS`; zeros at the start).
+"""
+
+from __future__ import annotations
+
+from math import cos, isfinite, sin
+
+import numpy as np
+from numba import njit
+
+from fieldline.estimation.skiprope.bandpass import exact_step
+from fieldline.frames.vectors import cross, dot, norm, scale, sub, unit
+
+STATES = 16
+HEAD = (
+    8  # of the memory: started, last time, first time, mean NIS, samples, passed over since the last used, NIS, all passed over
+)
+SIZE = HEAD + STATES + STATES * STATES + STATES  # head, state, covariance, room to work
+STARTED, LAST, FIRST, MEAN_NIS, COUNT, MISSED, NIS, ALL_MISSED = range(HEAD)
+SLOW, RATE, CONE, CONE_W, SWING, SWING_W = 0, 3, 6, 10, 11, 15
+PARAMETERS = (
+    "noise_tesla",
+    "direction_rad",  # white, a sample
+    "slow_rad_s32",  # accelerations of (2), rad/s^2 over sqrt(Hz)
+    "cone_rad_s12",  # noise of (3)
+    "frequency_rad_s32",
+    "swing_rad_s12",
+    "swing_frequency_rad_s32",
+    "tilt_std_rad",  # first deviations: of s1, s2
+    "yaw_std_rad",
+    "rate_std_rad_s",
+    "cone_std_rad",
+    "frequency_std_rad_s",
+    "swing_std_rad",
+    "swing_frequency_std_rad_s",
+    "frequency_rad_s",
+    "swing_frequency_rad_s",
+    "slow_rate_rad_s",  # v of (2)
+)
+SLOW_DAMPING = 0.7
+GATE = 36.0  # of the squared normalised innovation
+MOST_MISSED = 20  # passed over in turn: the next is used
+
+
+@njit(cache=True)
+def covariance_of(memory):
+    """(16, 16) view of the covariance in the memory."""
+    return memory[HEAD + STATES : HEAD + STATES + STATES * STATES].reshape(STATES, STATES)
+
+
+@njit(cache=True)
+def kalman_start(t, memory, params):
+    """Set the memory to the first deviations at time t [s]."""
+    memory[:] = 0.0
+    memory[STARTED], memory[LAST], memory[FIRST], memory[MEAN_NIS] = 1.0, t, t, 1.0
+    memory[HEAD + CONE_W], memory[HEAD + SWING_W] = params[14], params[15]
+    deviations = (
+        params[7], params[7], params[8], params[9], params[9], params[9],
+        params[10], params[10], params[10], params[10], params[11],
+        params[12], params[12], params[12], params[12], params[13],
+    )  # fmt: skip
+    for i in range(STATES):
+        memory[HEAD + STATES + i * STATES + i] = deviations[i] * deviations[i]
+
+
+@njit(cache=True)
+def kalman_carry(t, memory, params):
+    """Carry state and covariance on to time t [s], later than the last."""
+    dt = t - memory[LAST]
+    x = memory[HEAD : HEAD + STATES]
+    p = covariance_of(memory)
+    f11, f12, f21, f22 = exact_step(dt, params[16], SLOW_DAMPING)
+    for i in range(3):
+        angle, rate = x[SLOW + i], x[RATE + i]
+        x[SLOW + i], x[RATE + i] = f11 * angle + f12 * rate, f21 * angle + f22 * rate  # (2)
+        for j in range(STATES):
+            u, v = p[SLOW + i, j], p[RATE + i, j]
+            p[SLOW + i, j], p[RATE + i, j] = f11 * u + f12 * v, f21 * u + f22 * v
+        for j in range(STATES):
+            u, v = p[j, SLOW + i], p[j, RATE + i]
+            p[j, SLOW + i], p[j, RATE + i] = f11 * u + f12 * v, f21 * u + f22 * v
+    _turn_pairs(x, p, CONE, CONE_W, dt)
+    _turn_pairs(x, p, SWING, SWING_W, dt)
+    slow = params[2] * params[2]
+    for i in range(3):
+        p[SLOW + i, SLOW + i] += slow * dt * dt * dt / 3.0
+        p[SLOW + i, RATE + i] += slow * dt * dt / 2.0
+        p[RATE + i, SLOW + i] += slow * dt * dt / 2.0
+        p[RATE + i, RATE + i] += slow * dt
+    for i in range(4):
+        p[CONE + i, CONE + i] += params[3] * params[3] * dt  # (3)
+        p[SWING + i, SWING + i] += params[5] * params[5] * dt
+    p[CONE_W, CONE_W] += params[4] * params[4] * dt
+    p[SWING_W, SWING_W] += params[6] * params[6] * dt
+    for i in range(STATES):
+        for j in range(i):
+            p[i, j] = p[j, i]
+    memory[LAST] = t
+
+
+@njit(cache=True)
+def _turn_pairs(x, p, first, frequency, dt):
+    """Two phasors turned by their frequency, and the covariance with them."""
+    c, s = cos(x[frequency] * dt), sin(x[frequency] * dt)
+    for k in (first, first + 2):
+        re, im = c * x[k] - s * x[k + 1], s * x[k] + c * x[k + 1]
+        x[k], x[k + 1] = re, im
+        for j in range(STATES):
+            u, v, w = p[k, j], p[k + 1, j], p[frequency, j]
+            p[k, j], p[k + 1, j] = c * u - s * v - dt * im * w, s * u + c * v + dt * re * w
+        for j in range(STATES):
+            u, v, w = p[j, k], p[j, k + 1], p[j, frequency]
+            p[j, k], p[j, k + 1] = c * u - s * v - dt * im * w, s * u + c * v + dt * re * w
+
+
+@njit(cache=True)
+def predicted(x, known):
+    """The direction (1) of a known unit vector, and its three derivatives by a1, a2, a3."""
+    a1, a2, a3 = x[SLOW] + x[CONE] + x[SWING], x[SLOW + 1] + x[CONE + 2] + x[SWING + 2], x[SLOW + 2]
+    c1, s1, c2, s2, c3, s3 = cos(a1), sin(a1), cos(a2), sin(a2), cos(a3), sin(a3)
+    v3 = (c3 * known[0] + s3 * known[1], c3 * known[1] - s3 * known[0], known[2])
+    v2 = (c2 * v3[0] - s2 * v3[2], v3[1], s2 * v3[0] + c2 * v3[2])
+    v1 = _about_first(c1, s1, v2)
+    by_a1 = (0.0, v1[2], -v1[1])
+    by_a2 = _about_first(c1, s1, (-v2[2], 0.0, v2[0]))
+    turned = (v3[1], -v3[0], 0.0)
+    by_a3 = _about_first(c1, s1, (c2 * turned[0], turned[1], s2 * turned[0]))
+    return v1, by_a1, by_a2, by_a3
+
+
+@njit(cache=True)
+def _about_first(c, s, v):
+    """V in axes turned about the first."""
+    return (v[0], c * v[1] + s * v[2], c * v[2] - s * v[1])
+
+
+@njit(cache=True, error_model="numpy")
+def kalman_update(t, field_b, field_c, memory, params):
+    """Take in one sample: the measured field (3,) [T], body axes, and the known one, axes (U, V, W). True where it was used.
+
+    A sample that is not finite, or not later than the last, changes nothing.
+    """
+    b, known = (field_b[0], field_b[1], field_b[2]), (field_c[0], field_c[1], field_c[2])
+    size, size_known = norm(b), norm(known)
+    if not (isfinite(t) and isfinite(size) and isfinite(size_known) and size > 0.0 and size_known > 0.0):
+        return False
+    if memory[STARTED] == 0.0:
+        kalman_start(t, memory, params)
+    elif not t > memory[LAST]:
+        return False
+    else:
+        kalman_carry(t, memory, params)
+    x = memory[HEAD : HEAD + STATES]
+    p = covariance_of(memory)
+    expected, by_a1, by_a2, by_a3 = predicted(x, unit(known))
+    off = sub(scale(1.0 / size, b), expected)
+    variance = (params[0] / size) ** 2 + params[1] ** 2
+    first, second = _across(expected)
+    h1 = (dot(first, by_a1), dot(first, by_a2), dot(first, by_a3))
+    h2 = (dot(second, by_a1), dot(second, by_a2), dot(second, by_a3))
+    r1, r2 = dot(first, off), dot(second, off)
+    s11, s12, s22 = _inside(p, h1, h1) + variance, _inside(p, h1, h2), _inside(p, h2, h2) + variance
+    nis = (s22 * r1 * r1 - 2.0 * s12 * r1 * r2 + s11 * r2 * r2) / (s11 * s22 - s12 * s12)
+    if nis > GATE and memory[MISSED] < MOST_MISSED and memory[COUNT] > 0.0:
+        memory[MISSED] += 1.0
+        memory[ALL_MISSED] += 1.0
+        return False
+    work = memory[SIZE - STATES :]
+    moved = _take(x, p, work, h1, h2, r1, variance)
+    _take(x, p, work, h2, h1, r2 - moved, variance)
+    memory[MISSED], memory[NIS] = 0.0, nis
+    memory[COUNT] += 1.0
+    memory[MEAN_NIS] += (0.5 * nis - memory[MEAN_NIS]) * max(1.0 / memory[COUNT], _share(t, memory, x))
+    return True
+
+
+@njit(cache=True)
+def _across(direction):
+    """Two unit vectors across a direction."""
+    helper = (1.0, 0.0, 0.0) if abs(direction[0]) < 0.8 else (0.0, 1.0, 0.0)
+    first = unit(cross(direction, helper))
+    return first, cross(direction, first)
+
+
+@njit(cache=True)
+def _row(p, i, h):
+    """Row i of the covariance times a measurement's derivatives h by (a1, a2, a3)."""
+    by_a1 = p[i, SLOW] + p[i, CONE] + p[i, SWING]
+    by_a2 = p[i, SLOW + 1] + p[i, CONE + 2] + p[i, SWING + 2]
+    return h[0] * by_a1 + h[1] * by_a2 + h[2] * p[i, SLOW + 2]
+
+
+@njit(cache=True)
+def _inside(p, ha, hb):
+    """Covariance of two measurements."""
+    a1 = _row(p, SLOW, hb) + _row(p, CONE, hb) + _row(p, SWING, hb)
+    a2 = _row(p, SLOW + 1, hb) + _row(p, CONE + 2, hb) + _row(p, SWING + 2, hb)
+    return ha[0] * a1 + ha[1] * a2 + ha[2] * _row(p, SLOW + 2, hb)
+
+
+@njit(cache=True)
+def _take(x, p, work, h, other, residual, variance):
+    """Update by one number; by how much that moves what the other derivatives expect."""
+    total = variance
+    for i in range(STATES):
+        work[i] = _row(p, i, h)
+    total += h[0] * (work[SLOW] + work[CONE] + work[SWING])
+    total += h[1] * (work[SLOW + 1] + work[CONE + 2] + work[SWING + 2]) + h[2] * work[SLOW + 2]
+    gain = residual / total
+    for i in range(STATES):
+        x[i] += gain * work[i]
+        for j in range(i, STATES):
+            p[i, j] -= work[i] * work[j] / total
+            p[j, i] = p[i, j]
+    by_a1, by_a2 = work[SLOW] + work[CONE] + work[SWING], work[SLOW + 1] + work[CONE + 2] + work[SWING + 2]
+    return gain * (other[0] * by_a1 + other[1] * by_a2 + other[2] * work[SLOW + 2])
+
+
+@njit(cache=True)
+def _share(t, memory, x):
+    """Weight of the newest sample in the mean of two periods, from how often samples have come."""
+    interval = (t - memory[FIRST]) / max(memory[COUNT] - 1.0, 1.0)
+    return interval * abs(x[CONE_W]) / (4.0 * np.pi)
+
+
+@njit(cache=True)
+def kalman_run(seconds, field_b, field_c, memory, params, rows, states, covariances, mean_nis):
+    """Take in n samples; at times `rows` (m,), rising, store state (m, 16), covariance (m, 16, 16), and mean NIS (m,).
+
+    A row is the state carried on from the last sample before or at its time; NaN before the first.
+    """
+    k = 0
+    for j in range(len(seconds) + 1):
+        while k < len(rows) and (j == len(seconds) or rows[k] < seconds[j]):
+            if memory[STARTED] == 0.0:
+                states[k], covariances[k], mean_nis[k] = np.nan, np.nan, np.nan
+            else:
+                kept = memory.copy()
+                if rows[k] > kept[LAST]:
+                    kalman_carry(rows[k], kept, params)
+                states[k] = kept[HEAD : HEAD + STATES]
+                covariances[k] = covariance_of(kept)
+                mean_nis[k] = kept[MEAN_NIS]
+            k += 1
+        if j < len(seconds):
+            kalman_update(seconds[j], field_b[j], field_c[j], memory, params)
