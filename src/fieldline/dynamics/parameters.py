@@ -128,6 +128,7 @@ class Lines(NamedTuple):
     reel: np.ndarray  # (n,) int64, NO_REEL, RATE_REEL or TENSION_REEL
     reel_lag: np.ndarray  # (n,) [s], of a reel that follows a rate; [kg], effective mass of one that follows a tension
     spacing: np.ndarray  # (n,) [m], unstretched length of a full segment beside a reel
+    span: np.ndarray  # (n, 2) [m], least and largest unstretched length out beside a reel
     stored: np.ndarray  # (n,) [kg], mass of the line that is out at the start: the rest is in the reel's body
 
 

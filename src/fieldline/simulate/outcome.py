@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fieldline.dynamics.layout import starts_in_state
 from fieldline.errors import InputError, raised
 from fieldline.simulate.loop.records import Outcome
 
@@ -131,6 +132,26 @@ def _underflow(flight, t: float) -> str:
     )
 
 
+def _reel(far: str):
+    """Words for a reel at an end of its line."""
+
+    def words(flight, t: float) -> str:
+        k = int(flight.shared.culprit[0])
+        line = flight.scenario.line[k]
+        reel, name = line.reel, line.name or f"line_{k + 1}"
+        rate = flight.y[starts_in_state(flight.plant)[1] + 2 * k + 1]
+        if far == "in":
+            told = f"took {name} in to shortest_length_m = {reel.shortest_length_m:g} m"
+        else:
+            told = f"paid out all {reel.total_length_m:g} m of {name} (total_length_m)"
+        return (
+            f'the reel on "{line.to_body}" {told} at t = {t:.6g} s and still ran at {rate:.4g} m/s. Let its law stop it before, '
+            "as reel-profile does at its target_length_m, or end the run there with duration_s or an event."
+        )
+
+    return words
+
+
 WORDS = {
     Outcome.DONE: lambda flight, t: f"flown to its end, {t:.6g} s.",
     Outcome.STOPPED: lambda flight, t: f"stopped by an event at t = {t:.6g} s.",
@@ -147,4 +168,6 @@ WORDS = {
     Outcome.EVENT_FAILED: _event,
     Outcome.LAW_NOT_UNIT: _not_unit,
     Outcome.LOAD_NOT_FINITE: _load("returned a number that is not finite"),
+    Outcome.REEL_IN: _reel("in"),
+    Outcome.REEL_OUT: _reel("out"),
 }

@@ -17,7 +17,9 @@ class Reel(Record):
         description='"rate": the command is the rate at which the line is paid out [m/s]; "tension": the pull of its motor [N]',
     )
     total_length_m: float = Field(gt=0.0, description="the whole line, on the reel and out, without tension [m]")
-    shortest_length_m: float = Field(default=1.0, gt=0.0, description="length out at which it stops taking in [m]")
+    shortest_length_m: float = Field(
+        default=1.0, gt=0.0, description="least length out [m]; a run in which it is taken in further ends there"
+    )
     rate_m_s: float = Field(
         default=0.0, description="rate at the start, positive out; in mode rate also the command until a law speaks [m/s]"
     )

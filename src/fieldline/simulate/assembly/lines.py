@@ -49,6 +49,7 @@ def lines_of(scenario) -> Lines:
         reel=np.array([NO_REEL if line.reel is None else REELS[line.reel.mode] for line in lines], dtype=np.int64),
         reel_lag=np.array([_lag(line.reel) for line in lines], dtype=float),
         spacing=np.array([spacing(line) for line in lines], dtype=float),
+        span=np.array([_span(line) for line in lines], dtype=float).reshape(-1, 2),
         stored=np.array([mass_out(line) for line in lines], dtype=float),
     )
 
@@ -96,6 +97,11 @@ def mass_out(line) -> float:
     out = nodes_out(line)
     linear = _materials(line)["mass_per_length_kg_m"]
     return float(linear[:out].sum() * spacing(line) + linear[out] * last_length(line))
+
+
+def _span(line) -> tuple[float, float]:
+    """Least and largest unstretched length out [m]."""
+    return (0.0, line.rest_length_m) if line.reel is None else (line.reel.shortest_length_m, line.reel.total_length_m)
 
 
 def _lag(reel) -> float:

@@ -41,6 +41,7 @@ from fieldline.simulate.loop.records import (
     WHEEL,
     Outcome,
 )
+from fieldline.simulate.loop.reeling import reel_lines
 from fieldline.simulate.loop.sampling import sample
 from fieldline.simulate.loop.watching import GOES_ON, height_of, interpolant, quantity, watch, within
 
@@ -293,6 +294,8 @@ def fly(budget, run, laws, memories, parameters, loads, call, rng):
             return DONE
         outcome, t = advance(t, next_time(t, run), run, loads, call)
         clock.t[0] = t
+        if outcome == 0:
+            outcome = reel_lines(t, run)
         if outcome == STOPPED and t - run.record.seconds[clock.rows[0] - 1] > SAME_TIME_S:
             write_row(t, run.y, run, loads, call)
         if outcome != 0:

@@ -46,6 +46,8 @@ class Outcome(IntEnum):
     LOAD_NOT_FINITE = 12
     EVENT_FAILED = 13
     LAW_NOT_UNIT = 14
+    REEL_IN = 15
+    REEL_OUT = 16
 
 
 class Stepping(NamedTuple):
