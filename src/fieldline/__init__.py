@@ -35,6 +35,7 @@ _HOMES = {
     "simulate": "fieldline.simulate",
     "simulate_many": "fieldline.simulate",
     "line_shape": "fieldline.simulate.line_shape",
+    "tether_modes": "fieldline.analysis.tether",
     "Normal": "fieldline.simulate",
     "Uniform": "fieldline.simulate",
     "Choice": "fieldline.simulate",
@@ -66,6 +67,7 @@ __all__ = [
     "Uniform",
     "Choice",
     "line_shape",
+    "tether_modes",
     "Scenario",
     "FieldlineError",
     "InputError",
@@ -73,6 +75,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from fieldline.analysis.tether import tether_modes
     from fieldline.control.electrodynamic import electrodynamic_map
     from fieldline.environment import eclipse, field_gradient, field_model, magnetic_field, sun_direction_i
     from fieldline.errors import FieldlineError, InputError, NoEstimateError

@@ -5,11 +5,14 @@ statics                     the state of rest: orbital rate, stretch, tension
 eigenmodes, tether_modes    frequencies and shapes in the plane, across it and along the line
 closed_forms                libration at large angles, rods, strings
 starts, waves               states to begin a run with: straight, hanging, librating, skiprope, pulses
+modal, budget               amplitudes of lateral modes, energy and momentum of a line in motion
 """
 
+from fieldline.analysis.tether.budget import line_budget
 from fieldline.analysis.tether.closed_forms import libration_ratio, rod_frequencies, string_frequency
 from fieldline.analysis.tether.eigenmodes import eigenmotions
 from fieldline.analysis.tether.grid import chain_grid, continuum_grid
+from fieldline.analysis.tether.modal import modal_amplitudes
 from fieldline.analysis.tether.starts import Ends, LineState, hanging, librating, rod_tension, straight
 from fieldline.analysis.tether.statics import Hanging, hang, inextensible_rate, inextensible_tension
 from fieldline.analysis.tether.strand import Strand, Stretches, cut, point_masses
@@ -42,4 +45,6 @@ __all__ = [
     "skiprope",
     "pulse",
     "lateral_mode",
+    "modal_amplitudes",
+    "line_budget",
 ]

@@ -1,11 +1,11 @@
-"""Axes c of a line: e3 from its lower end to its upper, e1 along the track, e2 to the side of the orbit's normal h.
+"""Axes of a line about the way down it, and directions at angles of libration; as `fieldline.analysis.line_shape` has them.
 
-    e1 = unit(h x e3),   e2 = e3 x e1                                                                       (1)
-    e3 = cos b (cos a up + sin a forward) + sin b h                                                          (2)
+With d the direction from the upper end to the lower, orbital axes o of a centre, x along the track and y against the normal,
 
-a: libration in the plane, positive when the upper end is ahead; b: across it, positive when the upper end is on the side of
-h = unit(r x v) of the mass centre; up = unit(r), forward = h x up. In the plane a is what is left of the angle between the
-line and the vertical; for a line that points along h, e1 is not defined.
+    e_1 = unit(y_o x d),   e_2 = d x e_1                                                                     (1)
+    d = cos b (cos a z_o + sin a x_o) + sin b y_o                                                            (2)
+
+a: libration in the plane, positive with the lower end ahead; b: across it. For a vertical line e_1 is x_o and e_2 is y_o.
 """
 
 from __future__ import annotations
@@ -16,44 +16,39 @@ import numpy as np
 
 
 class Frame(NamedTuple):
-    """Axes and their rates; leading axes of any shape."""
+    """Axes of a line and their rates, inertial components."""
 
-    axes: np.ndarray  # (..., 3, 3), rows e1, e2, e3
-    rate: np.ndarray  # (..., 3, 3), their time derivatives [1/s]
-
-
-def unit_rows(vectors: np.ndarray) -> np.ndarray:
-    """Vectors (..., 3) over their lengths."""
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    axes: np.ndarray  # (3, 3), rows e_1, e_2, d
+    rate: np.ndarray  # (3, 3) [1/s], their time derivatives
 
 
-def unit_and_rate(vectors: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Directions of vectors (..., 3) and how fast they turn [1/s]."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    direction = vectors / length
-    return direction, (rates - direction * (direction * rates).sum(axis=-1, keepdims=True)) / length
+def unit_and_rate(vector: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Direction of a vector (3,) and how fast it turns [1/s]."""
+    length = np.linalg.norm(vector)
+    direction = vector / length
+    return direction, (rate - direction * (direction @ rate)) / length
 
 
-def line_axes(chord_i: np.ndarray, chord_rate_i: np.ndarray, normal_i: np.ndarray) -> Frame:
-    """Axes (1) of chords (..., 3) [m] from the lower end to the upper, their rates [m/s], and the orbit's normal (..., 3).
-
-    The normal is taken to stand still: it moves by arcseconds while a line swings once.
-    """
-    e3, d3 = unit_and_rate(chord_i, chord_rate_i)
-    e1, d1 = unit_and_rate(np.cross(normal_i, e3), np.cross(normal_i, d3))
-    e2, d2 = np.cross(e3, e1), np.cross(d3, e1) + np.cross(e3, d1)
-    return Frame(np.stack([e1, e2, e3], axis=-2), np.stack([d1, d2, d3], axis=-2))
+def line_axes(down_i: np.ndarray, down_rate_i: np.ndarray, y_o_i: np.ndarray) -> Frame:
+    """Axes (1) of a chord (3,) [m] from the upper end to the lower, and its rate [m/s]; y_o is taken to stand still."""
+    d, d_rate = unit_and_rate(down_i, down_rate_i)
+    e1, e1_rate = unit_and_rate(np.cross(y_o_i, d), np.cross(y_o_i, d_rate))
+    return Frame(np.stack([e1, np.cross(d, e1), d]), np.stack([e1_rate, np.cross(d_rate, e1) + np.cross(d, e1_rate), d_rate]))
 
 
-def orbit_axes(position_i: np.ndarray, velocity_i: np.ndarray) -> np.ndarray:
-    """(..., 3, 3) rows up, forward, normal of a mass centre's position [m] and velocity [m/s]."""
-    up = unit_rows(position_i)
-    normal = unit_rows(np.cross(position_i, velocity_i))
-    return np.stack([up, np.cross(normal, up), normal], axis=-2)
+def direction_o(in_plane_rad: float, across_rad: float) -> np.ndarray:
+    """(3,) equation (2): d in orbital axes."""
+    a, b = in_plane_rad, across_rad
+    return np.array([np.cos(b) * np.sin(a), np.sin(b), np.cos(b) * np.cos(a)])
 
 
-def direction_of(in_plane_rad, out_of_plane_rad, orbit: np.ndarray) -> np.ndarray:
-    """(..., 3) equation (2): the direction e3 of two angles in the axes of an orbit (..., 3, 3)."""
-    a, b = np.asarray(in_plane_rad, dtype=float), np.asarray(out_of_plane_rad, dtype=float)
-    parts = np.stack(np.broadcast_arrays(np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)), axis=-1)
-    return np.einsum("...k,...kj->...j", parts, orbit)
+def direction_rate_o(in_plane_rad: float, across_rad: float, in_plane_rate: float, across_rate: float) -> np.ndarray:
+    """(3,) [1/s] d' of (2) as seen in the turning axes, of rates [rad/s] of both angles."""
+    a, b, da, db = in_plane_rad, across_rad, in_plane_rate, across_rate
+    return np.array(
+        [
+            da * np.cos(b) * np.cos(a) - db * np.sin(b) * np.sin(a),
+            db * np.cos(b),
+            -da * np.cos(b) * np.sin(a) - db * np.sin(b) * np.cos(a),
+        ]
+    )

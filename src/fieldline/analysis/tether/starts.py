@@ -20,10 +20,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fieldline.analysis.tether.axes import direction_of, orbit_axes
+from fieldline.analysis.tether.axes import direction_o, direction_rate_o
 from fieldline.analysis.tether.strand import Strand, point_masses
 from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.errors import InputError
+from fieldline.frames.orbital import dcm_oi
 
 
 class Ends(NamedTuple):
@@ -74,52 +75,45 @@ def librating(
     mass_a_kg: float,
     mass_b_kg: float,
     *,
-    upward: bool = True,
+    upward: bool = False,
     in_plane_rad: float = 0.0,
-    out_of_plane_rad: float = 0.0,
+    across_rad: float = 0.0,
     in_plane_rate_rad_s: float = 0.0,
-    out_of_plane_rate_rad_s: float = 0.0,
+    across_rate_rad_s: float = 0.0,
     gm_m3_s2: float = EARTH_GM_M3_S2,
 ) -> LineState:
-    """A line from attachment A, straight, at angles of `fieldline.analysis.tether.axes` from the vertical, and its end B.
+    """A straight line from attachment A at angles from the vertical, its end B with it, so that nothing stretches or rings.
 
-    position_i, velocity_i : (3,) of attachment A [m, m/s]; of the velocity the direction counts.
-    upward : B is above A (angles zero), or below.
-    With angles and rates zero this is the state of rest in a circular orbit: row 0 of the result has the velocity that A
-    needs for it, which is not that of a free body there.
+    position_i, velocity_i : (3,) of attachment A [m, m/s]; of the velocity only the orbit's plane and sense count.
+    upward : B is above A at angles of zero, or below.
+    in_plane_rad, across_rad : libration (2) of `fieldline.analysis.tether.axes`, and their rates [rad/s] in orbital axes.
+
+    With angles and rates zero this is the state of rest in a circular orbit. Row 0 of velocity_i is the velocity that A needs
+    for it, which is not that of a free body there: the mass centre is on the circular orbit.
 
     Raises
     ------
     InputError : a line that stretches without end, or angles at which it would be pushed together.
     """
     position = np.asarray(position_i, dtype=float)
-    orbit = orbit_axes(position, np.asarray(velocity_i, dtype=float))
-    up = direction_of(in_plane_rad, out_of_plane_rad, orbit)
-    sign = 1.0 if upward else -1.0
-    a, b, da, db = in_plane_rad, out_of_plane_rad, in_plane_rate_rad_s, out_of_plane_rate_rad_s
-    turn = np.array(
-        [
-            -db * np.sin(b) * np.cos(a) - da * np.cos(b) * np.sin(a),
-            -db * np.sin(b) * np.sin(a) + da * np.cos(b) * np.cos(a),
-            db * np.cos(b),
-        ]
-    )
+    dcm = dcm_oi(position, velocity_i)
+    away = 1.0 if not upward else -1.0
+    e = away * direction_o(in_plane_rad, across_rad) @ dcm
+    turn = away * direction_rate_o(in_plane_rad, across_rad, in_plane_rate_rad_s, across_rate_rad_s) @ dcm
     masses = point_masses(strand, mass_a_kg, mass_b_kg)
     lengths = np.array(strand.rest, dtype=float)
     for _ in range(100):
-        along = np.concatenate([[0.0], np.cumsum(lengths)])
-        points = position + sign * along[:, None] * up
-        rate = _circular_rate(points, masses, gm_m3_s2)
-        spin = rate * orbit[2]
-        speeds = np.cross(spin, points) + sign * along[:, None] * (turn @ orbit)
-        state = LineState(points, speeds)
+        along = np.concatenate([[0.0], np.cumsum(lengths)])[:, None]
+        points = position + along * e
+        spin = -_circular_rate(points, masses, gm_m3_s2) * dcm[1]
+        state = LineState(points, np.cross(spin, points) + along * turn)
         tension = rod_tension(state, masses, gm_m3_s2)
         longer = strand.rest * (1.0 + tension / strand.stiffness)
-        if not np.all(longer > 0.5 * strand.rest) or not np.all(longer < 2.0 * strand.rest):
+        if not np.all((longer > 0.5 * strand.rest) & (longer < 2.0 * strand.rest)):
             raise InputError(
                 "the line would stretch to more than twice its length, or be pushed together: is stiffness_n in newtons?"
             )
-        if np.abs(longer - lengths).max() <= 1e-15 * along[-1]:
+        if np.abs(longer - lengths).max() <= 1e-15 * along[-1, 0]:
             break
         lengths = longer
     if tension.min() < 0.0:

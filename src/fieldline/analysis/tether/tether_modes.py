@@ -134,9 +134,7 @@ def _nodes(nodes) -> int | None:
     if nodes is None:
         return None
     if isinstance(nodes, bool) or not isinstance(nodes, int | np.integer) or not 0 <= nodes <= MOST_NODES:
-        raise InputError(
-            f"nodes must be a whole number from 0 to {MOST_NODES}, or None for the continuum, which many nodes come near; got {nodes!r}."
-        )
+        raise InputError(f"nodes must be a whole number from 0 to {MOST_NODES}, or None for the continuum; got {nodes!r}.")
     return int(nodes)
 
 

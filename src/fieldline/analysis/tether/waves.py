@@ -1,13 +1,13 @@
 """Waves laid over a line that lies straight: skiprope and swings of any mode, and pulses that run along it.
 
-Seen in the axes of the line (`fieldline.analysis.tether.axes`), the deflections in the plane and across it are
+Seen in the axes of the line (`fieldline.analysis.tether.axes`), the deflections in the plane (e_1) and across it (e_2) are
 
     x = A f(s) cos(p),    y = +-A f(s) sin(p),    dx/dt = -A wx f(s) sin(p),    dy/dt = +-A wy f(s) cos(p)   (1)
 
-for a skiprope that turns positively (right-handed about the direction from the lower end to the upper, so from forward to
-the orbit's normal) or negatively, p its phase; a swing in one plane at the angle p from forward has y = A f sin(p) and no
-speed. f is the shape of the mode less the straight line between its ends, so that the bodies stay where they are: with a
-body that is not heavy against the line a little libration starts with it. f is 1 where it is largest. The rates are
+for a skiprope that goes round right-handed (+) about the direction down the line, or left-handed (-), p its phase; a swing in
+one plane at the angle p from e_1 has y = A f sin(p) and no speed. f is the shape of the mode less the straight line between
+its ends, so that the bodies stay where they are: with a body that is not heavy against the line a little libration starts
+with it. f is 1 where it is largest. The rates are
 
     {S + m GM/r^3} f = m wy^2 f,    wx^2 = wy^2 - n^2                                                        (2)
 
@@ -29,7 +29,7 @@ from fieldline.analysis.tether.strand import Strand, point_masses
 from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.errors import InputError, nearest
 
-SENSES = ("positive", "negative", "plane")
+SENSES = {"right-handed": 1.0, "left-handed": -1.0, "plane": 0.0}
 TOWARDS = {"b": 1.0, "a": -1.0, "both": 0.0}
 
 
@@ -49,14 +49,14 @@ def skiprope(
     *,
     amplitude_m: float,
     phase_rad: float = 0.0,
-    sense: str = "positive",
+    sense: str = "right-handed",
     mode: int = 1,
     gm_m3_s2: float = EARTH_GM_M3_S2,
 ) -> LineState:
     """A straight line's state with a mode laid over it, equation (1); nodes move, attachments do not.
 
     amplitude_m : largest deflection from the straight line [m]. phase_rad : p. mode : half waves, 1 to the number of nodes.
-    sense : "positive", "negative", or "plane": a swing through the angle p.
+    sense : "right-handed", "left-handed" (about the direction down the line), or "plane": a swing through the angle p.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def skiprope(
     masses = point_masses(strand, mass_a_kg, mass_b_kg)
     lateral = lateral_mode(state, strand, masses, mode, gm_m3_s2)
     frame = frame_of(state, masses)
-    turning = {"positive": 1.0, "negative": -1.0, "plane": 0.0}[sense]
+    turning = SENSES[sense]
     side = turning if turning else 1.0
     cosine, sine = np.cos(phase_rad), np.sin(phase_rad)
     place = amplitude_m * np.array([cosine, side * sine, 0.0])
@@ -139,9 +139,10 @@ def lateral_mode(state: LineState, strand: Strand, masses: np.ndarray, mode: int
 
 
 def frame_of(state: LineState, masses: np.ndarray) -> Frame:
-    """Axes of the line between its ends, the lower being the one nearer the Earth."""
+    """Axes of the line between its ends, the upper being the one farther from the Earth."""
     share = masses / masses.sum()
-    normal = np.cross(share @ state.position_i, share @ state.velocity_i)
-    lower, upper = (0, -1) if np.linalg.norm(state.position_i[0]) <= np.linalg.norm(state.position_i[-1]) else (-1, 0)
-    chord, chord_rate = (part[upper] - part[lower] for part in state)
-    return line_axes(chord, chord_rate, normal)
+    against_normal = np.cross(share @ state.velocity_i, share @ state.position_i)
+    radius = np.linalg.norm(state.position_i, axis=1)
+    lower, upper = (0, -1) if radius[0] <= radius[-1] else (-1, 0)
+    chord, chord_rate = (part[lower] - part[upper] for part in state)
+    return line_axes(chord, chord_rate, against_normal)
