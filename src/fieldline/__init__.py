@@ -30,6 +30,7 @@ _HOMES = {
     "calibrate": "fieldline.estimation.calibrate",
     "Calibration": "fieldline.estimation.calibration",
     "estimate_attitude": "fieldline.estimation",
+    "estimate_skiprope": "fieldline.estimation.skiprope_telemetry",
     "write_report": "fieldline.report",
     "electrodynamic_map": "fieldline.control.electrodynamic",
     "simulate": "fieldline.simulate",
@@ -59,6 +60,7 @@ __all__ = [
     "calibrate",
     "Calibration",
     "estimate_attitude",
+    "estimate_skiprope",
     "write_report",
     "electrodynamic_map",
     "simulate",
@@ -82,6 +84,7 @@ if TYPE_CHECKING:
     from fieldline.estimation import estimate_attitude
     from fieldline.estimation.calibrate import calibrate
     from fieldline.estimation.calibration import Calibration
+    from fieldline.estimation.skiprope_telemetry import estimate_skiprope
     from fieldline.orbit import orbit_from_positions, read_orbit
     from fieldline.report import write_report
     from fieldline.simulate.ensemble import Choice, Normal, Uniform, simulate_many

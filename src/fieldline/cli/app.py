@@ -14,6 +14,7 @@ from fieldline.cli.field import field
 from fieldline.cli.models import models
 from fieldline.cli.scenario import scenario
 from fieldline.cli.simulate import simulate
+from fieldline.cli.skiprope import skiprope
 
 app = typer.Typer(
     name="fieldline",
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (attitude, calibrate, simulate, field, demo, case, models):
+for command in (attitude, calibrate, skiprope, simulate, field, demo, case, models):
     app.command()(command)
 app.add_typer(design, name="design")
 app.add_typer(scenario, name="scenario")

@@ -35,7 +35,7 @@ def read_flight(path: Path, source: Source, progress: Progress) -> Any:
     telemetry = read_telemetry(
         path,
         mapping=source.mapping,
-        mag_columns=_three_names(source.mag_columns),
+        mag_columns=three_names(source.mag_columns),
         time_column=source.time_column,
         unit=source.unit,
         repair=source.repair,
@@ -48,7 +48,7 @@ def orbit_for(telemetry: Any, source: Source, progress: Progress) -> Any:
     """The orbit of the file that was given, or of the telemetry's own position columns, checked for the telemetry's times."""
     from fieldline.orbit import orbit_from_positions, read_orbit
 
-    eop = _earth_orientation(source.eop)
+    eop = earth_orientation(source.eop)
     if source.orbit is not None:
         orbit = read_orbit(source.orbit, norad_id=source.norad_id, eop=eop)
     elif telemetry.position_e is not None:
@@ -65,7 +65,7 @@ def orbit_for(telemetry: Any, source: Source, progress: Progress) -> Any:
     return orbit
 
 
-def _earth_orientation(path: Path | None) -> Any:
+def earth_orientation(path: Path | None) -> Any:
     """The file of --eop, read; None without it."""
     if path is None:
         return None
@@ -74,7 +74,7 @@ def _earth_orientation(path: Path | None) -> Any:
     return read_eop(path)
 
 
-def _three_names(text: str | None) -> tuple[str, ...] | None:
+def three_names(text: str | None) -> tuple[str, ...] | None:
     """a,b,c as three column names."""
     if text is None:
         return None

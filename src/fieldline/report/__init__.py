@@ -18,14 +18,16 @@ def write_report(dataset: xarray.Dataset, path: str | Path) -> Path:
 
     Parameters
     ----------
-    dataset : Dataset of `estimate_attitude` or `simulate`, in SI; the report shows degrees, kilometres and microtesla, and
-        says so.
+    dataset : Dataset of `estimate_attitude`, `estimate_skiprope` or `simulate`, in SI; the report shows
+        degrees, kilometres and microtesla, and says so.
     path : the file to write.
 
     Errors: InputError where the folder does not exist or cannot be written to.
     """
-    from fieldline.report import attitude_report, simulation_report
+    from fieldline.report import attitude_report, simulation_report, skiprope_report
 
+    if skiprope_report.is_skiprope(dataset):
+        return skiprope_report.write_skiprope_report(dataset, path)
     if simulation_report.is_run(dataset):
         return simulation_report.write_simulation_report(dataset, path)
     return attitude_report.write_report(dataset, path)

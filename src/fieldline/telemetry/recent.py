@@ -149,9 +149,14 @@ class Recent:
         assert self.last_ns is not None
         return rows.where(rows.time_utc.astype(np.int64) > self.last_ns - self.memory_ns)
 
-    def stretch(self) -> Rows:
-        """The rows that an estimate is made of: those within the memory."""
-        return self._recent(self.rows) if self.last_ns is not None else no_rows()
+    def stretch(self, until_ns: int | None = None) -> Rows:
+        """The rows within the memory before a time, that of the newest by default, which is then among them."""
+        if self.last_ns is None:
+            return no_rows()
+        until = self.last_ns + 1 if until_ns is None else until_ns
+        rows = joined_rows([self.rows, averaged(self.pending) if self.fast else self.pending])
+        ns = rows.time_utc.astype(np.int64)
+        return rows.where((ns >= until - self.memory_ns) & (ns < until))
 
     def state(self) -> dict:
         """All of it, in plain types that JSON holds to the last bit."""
@@ -160,7 +165,7 @@ class Recent:
             "counts": dict(self.counts),
             "fast": self.fast,
             "last_ns": self.last_ns,
-            "done": _plain(self.stretch()),
+            "done": _plain(self._recent(self.rows) if self.last_ns is not None else no_rows()),
             "pending": _plain(self.pending),
         }
 

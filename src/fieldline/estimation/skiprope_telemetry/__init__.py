@@ -1,7 +1,8 @@
 """The skiprope of flown telemetry: from a file and an orbit (`estimate_skiprope`), or from rows as they come (`LiveSkiprope`)."""
 
 from fieldline.estimation.skiprope_telemetry.face import estimate_skiprope
+from fieldline.estimation.skiprope_telemetry.live import LiveSkiprope
 from fieldline.estimation.skiprope_telemetry.mounting import Mounting
 from fieldline.estimation.skiprope_telemetry.solving import METHODS, SkipropeSettings
 
-__all__ = ["estimate_skiprope", "Mounting", "SkipropeSettings", "METHODS"]
+__all__ = ["estimate_skiprope", "LiveSkiprope", "Mounting", "SkipropeSettings", "METHODS"]
