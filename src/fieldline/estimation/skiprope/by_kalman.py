@@ -5,7 +5,7 @@ phasors are zero, give or take.
 
 Settings, chosen on other flights than those that are scored (docs/skiprope-accuracy.md):
 
-    slow angles     accelerations of 1e-5 rad/s^2 over the root of a hertz: 0.3 deg in 100 s, 9 deg in 1,000 s
+    slow angles     accelerations of 5e-6 rad/s^2 over the root of a hertz: 0.2 deg in 100 s, 5 deg in 1,000 s
     cone            3e-6 rad over the root of a second: 0.01 deg in an hour
     frequency       1e-7 rad/s over the root of a second: 0.1 mHz in an hour; more for a tether that is reeled
 
@@ -47,8 +47,8 @@ class KalmanSettings:
     """What the filter takes for usual; SI units, `_s12` and `_s32`: over the root of a second, and of its third power."""
 
     noise_tesla: float = 2e-8  # of a reading
-    direction_rad: float = 1e-4  # white, of the known field
-    slow_rad_s32: float = 1e-5
+    direction_rad: float = 2e-4  # white, of the known field
+    slow_rad_s32: float = 5e-6
     slow_rate_rad_s: float = 1e-3
     cone_rad_s12: float = 3e-6
     frequency_rad_s32: float = 1e-7

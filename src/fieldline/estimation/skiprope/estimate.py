@@ -26,10 +26,11 @@ from fieldline.estimation.skiprope.bandpass import positive
 from fieldline.estimation.skiprope.by_bandpass import bandpass_track
 from fieldline.estimation.skiprope.by_harmonic import harmonic_track
 from fieldline.estimation.skiprope.by_kalman import kalman_track
+from fieldline.estimation.skiprope.numbers import derived
 from fieldline.estimation.skiprope.reading import FieldKnowledge
 from fieldline.estimation.skiprope.rotary import BAND_HZ, Detection, Line, detect
 from fieldline.estimation.skiprope.signals import SkipropeSignals
-from fieldline.estimation.skiprope.solution import SkipropeEstimate, derived
+from fieldline.estimation.skiprope.solution import SkipropeEstimate
 from fieldline.estimation.skiprope.track import Track
 from fieldline.estimation.skiprope.words import none_of, notes_of, verdict_of
 

@@ -84,89 +84,45 @@ class SkipropeEstimate:
 
         row : index into `seconds`, the last by default; a slice gives (rows, count).
         """
-        if count < 1:
-            raise InputError(f"count must be 1 or more; got {count!r}.")
-        if not self.detected:
-            empty = np.empty((0, count))
-            return PlaneCrossings(seconds=empty, std_s=empty, towards=empty.astype(bool))
         rows = slice(-1, None) if row is None else slice(row, row + 1 or None) if isinstance(row, int) else row
-        angle = plane_rad - self.yaw_rad[rows]
-        s, c = np.sin(angle), np.cos(angle)
-        z, w = self.phasor[rows], TURN * self.frequency_hz[rows, None]
-        across, along = z[:, 0] * s - z[:, 1] * c, z[:, 0] * c + z[:, 1] * s
-        ahead = (0.5 * np.pi - np.angle(across)) % np.pi
-        phase = ahead[:, None] + np.pi * np.arange(count)
-        wait = phase / w
-        weight = np.stack([np.cos(phase) * s[:, None], -np.sin(phase) * s[:, None]], axis=-1)
-        weight = np.concatenate([weight, np.stack([-np.cos(phase) * c[:, None], np.sin(phase) * c[:, None]], axis=-1)], axis=-1)
-        variance = np.einsum("mki,mij,mkj->mk", weight, self.covariance[rows], weight)
-        there = np.real(along[:, None] * np.exp(1j * phase))
-        variance += (there * self.yaw_std_rad[rows, None]) ** 2
-        speed = np.abs(across)[:, None] * w
-        std = np.hypot(np.sqrt(variance) / speed, wait * (self.frequency_std_hz / self.frequency_hz)[rows, None])
-        found = (self.seconds[rows, None] + wait, std, there > 0.0)
-        if row is None or isinstance(row, int):
-            found = tuple(x[0] for x in found)
-        return PlaneCrossings(seconds=found[0], std_s=found[1], towards=found[2])
+        found = plane_crossings(
+            self.seconds[rows],
+            self.phasor[rows],
+            self.covariance[rows],
+            (self.frequency_hz[rows], self.frequency_std_hz[rows]),
+            (self.yaw_rad[rows], self.yaw_std_rad[rows]),
+            plane_rad,
+            count,
+        )
+        if isinstance(rows, slice) and not isinstance(row, slice) and len(found.seconds):
+            return PlaneCrossings(seconds=found.seconds[0], std_s=found.std_s[0], towards=found.towards[0])
+        return found
+
+
+def plane_crossings(seconds, phasor, covariance, frequency, yaw, plane_rad: float, count: int) -> PlaneCrossings:
+    """The next `count` crossings of a vertical plane after each of m times: (m, count).
+
+    seconds (m,); phasor (m, 2); covariance (m, 4, 4); frequency [Hz] and yaw [rad]: each with its deviation, (m,) and (m,).
+    """
+    if count < 1:
+        raise InputError(f"count must be 1 or more; got {count!r}.")
+    angle = plane_rad - yaw[0]
+    s, c = np.sin(angle), np.cos(angle)
+    z1, z2 = phasor.T
+    across, along = z1 * s - z2 * c, z1 * c + z2 * s
+    phase = ((0.5 * np.pi - np.angle(across)) % np.pi)[:, None] + np.pi * np.arange(count)
+    wait = phase / (TURN * frequency[0])[:, None]
+    turn = np.stack([np.cos(phase), -np.sin(phase)], axis=-1)
+    weight = np.concatenate([turn * s[:, None, None], -turn * c[:, None, None]], axis=-1)
+    variance = np.einsum("mki,mij,mkj->mk", weight, covariance, weight)
+    there = np.real(along[:, None] * np.exp(1j * phase))
+    variance = variance + (there * yaw[1][:, None]) ** 2
+    speed = np.maximum(np.abs(across), 1e-300)[:, None] * TURN * frequency[0][:, None]
+    std = np.hypot(np.sqrt(variance) / speed, wait * (frequency[1] / frequency[0])[:, None])
+    return PlaneCrossings(seconds=seconds[:, None] + wait, std_s=std, towards=there > 0.0)
 
 
 def circular(phasor) -> np.ndarray:
     """(m, 2) complex: c+ and c- of (1)."""
     z1, z2 = phasor[:, 0], phasor[:, 1]
     return np.stack([0.5 * (z1 + 1j * z2), 0.5 * (z1 - 1j * z2)], axis=1)
-
-
-def derived(phasor, covariance, sense, yaw_rad, yaw_std_rad, tether_length_m: float) -> dict[str, np.ndarray]:
-    """All that follows from phasors (m, 2) and their covariance by (1) and (2): the fields of `SkipropeEstimate`, by name."""
-    parts = circular(phasor)
-    size = np.abs(parts)
-    main = np.where(sense == 0, size.argmax(axis=1), (sense < 0).astype(int))
-    k = np.arange(len(phasor))
-    amplitude, sign = size[k, main], np.where(main == 0, 1.0, -1.0)
-    # rows of the Jacobian of Re c+, Im c+, Re c-, Im c- by Re z1, Im z1, Re z2, Im z2
-    by_parts = 0.5 * np.array([[1, 0, 0, -1], [0, 1, 1, 0], [1, 0, 0, 1], [0, 1, -1, 0]], dtype=float)
-    unit = np.exp(1j * np.angle(parts))
-    radial = np.zeros((len(phasor), 2, 4))
-    for j in range(2):
-        radial[:, j] = unit[:, j, None].real * by_parts[2 * j] + unit[:, j, None].imag * by_parts[2 * j + 1]
-    tangential = np.where(main[:, None] == 0, unit[:, :1].real, unit[:, 1:].real) * by_parts[1 + 2 * main]
-    tangential -= np.where(main[:, None] == 0, unit[:, :1].imag, unit[:, 1:].imag) * by_parts[2 * main]
-    other = 1 - main
-    length = tether_length_m / np.pi
-    a1, a2 = phasor[:, 0].real, phasor[:, 1].real
-    radius = np.maximum(np.hypot(a1, a2), 1e-300)
-    tilt = covariance[:, ::2, ::2]
-    across = np.stack([-a2, a1], axis=1) / radius[:, None] ** 2
-    plane_variance = np.einsum("mi,mij,mj->m", across, tilt, across) + yaw_std_rad**2
-    s, c = np.sin(yaw_rad), np.cos(yaw_rad)
-    by_tilt = np.stack([np.stack([-s, -c], axis=-1), np.stack([c, -s], axis=-1)], axis=-2)  # of (2) turned by the yaw
-    middle = np.einsum("mij,mj->mi", by_tilt, np.stack([a1, a2], axis=1))
-    turned = np.stack([-middle[:, 1], middle[:, 0]], axis=1)
-    position_covariance = by_tilt @ tilt @ by_tilt.transpose(0, 2, 1)
-    position_covariance += (yaw_std_rad**2)[:, None, None] * turned[:, :, None] * turned[:, None, :]
-
-    def deviation(row):
-        return np.sqrt(np.einsum("mi,mij,mj->m", row, covariance, row))
-
-    amplitude_std = deviation(radial[k, main])
-    return {
-        "amplitude_rad": amplitude,
-        "amplitude_std_rad": amplitude_std,
-        "major_rad": size.sum(axis=1),
-        "major_std_rad": deviation(radial.sum(axis=1)),
-        "minor_rad": np.abs(size[:, 0] - size[:, 1]),
-        "minor_std_rad": deviation(radial[k, main] - radial[k, other]),
-        "phase_rad": sign * np.angle(parts[k, main]),
-        "phase_std_rad": deviation(tangential) / np.maximum(amplitude, 1e-300),
-        "plane_rad": wrapped(np.arctan2(a2, a1) + yaw_rad),
-        "plane_std_rad": np.sqrt(plane_variance),
-        "deflection_m": length * amplitude,
-        "deflection_std_m": length * amplitude_std,
-        "position_m": length * middle,
-        "position_covariance_m2": length**2 * position_covariance,
-    }
-
-
-def wrapped(angle) -> np.ndarray:
-    """[rad] within +-pi."""
-    return (np.asarray(angle) + np.pi) % TURN - np.pi
