@@ -31,7 +31,8 @@ COMMANDS = ("dipole", "wheel_torque", "thrust", "current", "reel", "attachment")
 class Parameter:
     """One number, vector, switch or word that a person may set.
 
-    `kind`: "number", "positive", "not negative", "vector" (3 numbers), "quaternion" (4), "switch" or "choice".
+    `kind`: "number", "positive", "not negative", "vector" (3 numbers), "quaternion" (4), "switch", "choice" or "names" (a
+    list of words).
     `default` None: required, or where `derived` worked out from the spacecraft and its orbit; `doc` says how.
     """
 
@@ -49,7 +50,8 @@ class DesignContext:
 
     inertia_kg_m2 (3, 3); mean_motion_rad_s; inclination_rad; period_s between two calls of the law; moment_max_a_m2 (3,)
     of the torquers about the body axes; wheel_axes_b (n, 3) unit vectors; field_along_orbit() gives seconds (n,) and the
-    on-board model's field [T] in orbital and in inertial axes, (n, 3) each, over one orbit or more.
+    on-board model's field [T] in orbital and in inertial axes, (n, 3) each, over one orbit or more; mass_kg, conductors and
+    thrusters (records) of the body, radius_m of its orbit.
     """
 
     inertia_kg_m2: np.ndarray
@@ -59,6 +61,10 @@ class DesignContext:
     moment_max_a_m2: np.ndarray
     wheel_axes_b: np.ndarray
     field_along_orbit: Callable[[], tuple[np.ndarray, np.ndarray, np.ndarray]]
+    mass_kg: float = np.nan
+    radius_m: float = np.nan
+    conductors: tuple = ()
+    thrusters: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -73,6 +79,7 @@ class Law:
     doc: str
     pack: Callable[[Mapping, DesignContext], np.ndarray]
     reference: bool = False  # whether it reads measurement.field_i, which costs a field model at every call
+    optional: tuple[str, ...] = ()  # of its commands: those that a body need not have the actuators for
 
 
 def complete(law: str, parameters: Mapping[str, Parameter], table: Mapping) -> dict:
@@ -104,6 +111,10 @@ def _checked(law: str, key: str, parameter: Parameter, given):
             hint = nearest(str(given), parameter.choices)
             raise InputError(f'{where} is one of {", ".join(parameter.choices)}; got "{shown(str(given))}"; {hint}')
         return given
+    if parameter.kind == "names":
+        if not isinstance(given, list | tuple) or not all(isinstance(one, str) for one in given):
+            raise InputError(f"{where} is a list of names; got {shown(repr(given))}.")
+        return tuple(given)
     return _numbers(where, parameter, given)
 
 

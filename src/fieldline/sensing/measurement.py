@@ -33,6 +33,8 @@ class Measurement(NamedTuple):
     tension: np.ndarray  # (n lines) [N] at this body, of each line that is attached
     line_length: np.ndarray  # (n lines) [m] unstretched length that is out
     line_rate: np.ndarray  # (n lines) [m/s] at which a reel feeds it
+    relative_position_i: np.ndarray  # (3) from the first body to this one, as known on board [m]; NaN on the first body
+    relative_velocity_i: np.ndarray  # (3) [m/s]
 
 
 def new_measurement(n_faces: int = 0, n_wheels: int = 0, n_lines: int = 0) -> Measurement:
@@ -53,4 +55,6 @@ def new_measurement(n_faces: int = 0, n_wheels: int = 0, n_lines: int = 0) -> Me
         tension=np.zeros(n_lines),
         line_length=np.zeros(n_lines),
         line_rate=np.zeros(n_lines),
+        relative_position_i=np.full(3, np.nan),
+        relative_velocity_i=np.full(3, np.nan),
     )

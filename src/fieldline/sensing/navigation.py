@@ -1,7 +1,8 @@
-"""Position and velocity as known on board, from GNSS or from elements.
+"""Position and velocity as known on board, from GNSS or from elements; those beside the first body, from a sensor of its own.
 
     r = r_i + x_i dx + y_i dy + z_i dz + noise                                                      (1)
     v = v_i + noise                                                                                 (2)
+    r - r_first = truth + noise,   v - v_first = truth + noise                                      (3)
 
 (dx, dy, dz) is constant in orbital axes: x along the velocity, z to the nadir, y against the orbit normal, so that an
 old ephemeris is mostly dx. Noise is white, GCRS axes, and independent between position and velocity.
@@ -26,6 +27,8 @@ class NavigationParams(NamedTuple):
     position_offset_o: np.ndarray  # (n, 3) [m], orbital axes
     position_noise_std: np.ndarray  # (n, 3) [m]
     velocity_noise_std: np.ndarray  # (n, 3) [m/s]
+    relative_position_noise_std: np.ndarray  # (n, 3) [m]
+    relative_velocity_noise_std: np.ndarray  # (n, 3) [m/s]
 
 
 @njit(cache=True)
@@ -51,3 +54,13 @@ def read_navigation(position_i, velocity_i, params, k, rng, out):
         out.position_i[axis] = place[axis]
         out.velocity_i[axis] = speed[axis]
     out.valid[ORBIT] = 1.0
+
+
+@njit(cache=True)
+def read_relative(position_i, velocity_i, params, k, rng, out):
+    """Place [m] and velocity [m/s] of body k from the first one as known on board, 3-tuples in GCRS axes, into `out`; (3)."""
+    place = add(position_i, noise3(params.relative_position_noise_std, k, rng))
+    speed = add(velocity_i, noise3(params.relative_velocity_noise_std, k, rng))
+    for axis in range(3):
+        out.relative_position_i[axis] = place[axis]
+        out.relative_velocity_i[axis] = speed[axis]

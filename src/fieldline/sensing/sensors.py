@@ -118,6 +118,12 @@ class Navigation(Record):
         default=NONE, description="standard deviation of white noise on each position, GCRS axes [m]"
     )
     velocity_noise_std_m_s: Spread = Field(default=NONE, description="standard deviation of white noise on each velocity [m/s]")
+    relative_position_noise_std_m: Spread = Field(
+        default=NONE, description="standard deviation of white noise on the place from the first body, GCRS axes [m]"
+    )
+    relative_velocity_noise_std_m_s: Spread = Field(
+        default=NONE, description="standard deviation of white noise on the velocity from the first body [m/s]"
+    )
 
 
 class Onboard(Record):

@@ -162,4 +162,6 @@ def _navigations(records: list) -> NavigationParams:
         position_offset_o=_table(records, 3, lambda r: r.position_offset_o_m),
         position_noise_std=_table(records, 3, lambda r: r.position_noise_std_m),
         velocity_noise_std=_table(records, 3, lambda r: r.velocity_noise_std_m_s),
+        relative_position_noise_std=_table(records, 3, lambda r: r.relative_position_noise_std_m),
+        relative_velocity_noise_std=_table(records, 3, lambda r: r.relative_velocity_noise_std_m_s),
     )

@@ -39,6 +39,10 @@ class Design:
             moment_max_a_m2=np.sum(moments, axis=0) if moments else np.zeros(3),
             wheel_axes_b=np.array([one.axis_b for one in body.wheel]).reshape(-1, 3),
             field_along_orbit=lambda: field_along(self._scenario, b, 2.0 * np.pi / mean_motion),
+            mass_kg=body.mass_kg,
+            radius_m=float(axis),
+            conductors=body.conductor,
+            thrusters=body.thruster,
         )
 
 

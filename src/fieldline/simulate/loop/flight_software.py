@@ -49,6 +49,8 @@ def measurement_of(boards, b):
         tension[: boards.lines[b]],
         length[: boards.lines[b]],
         rate[: boards.lines[b]],
+        boards.relative_position_i[b],
+        boards.relative_velocity_i[b],
     )
 
 
@@ -79,6 +81,9 @@ def refresh(t, b, reference, run):
         for j in range(3):
             boards.position_i[b, j] = y[STATE * b + j]
             boards.velocity_i[b, j] = y[STATE * b + 3 + j]
+            if b > 0:
+                boards.relative_position_i[b, j] = y[STATE * b + j] - y[j]
+                boards.relative_velocity_i[b, j] = y[STATE * b + 3 + j] - y[3 + j]
         boards.valid[b, ORBIT] = 1.0
     at = 0
     base = STATE * plant.bodies.mass.shape[0]

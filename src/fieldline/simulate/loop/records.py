@@ -21,7 +21,7 @@ NEVER = 1e300  # [s] a time that does not come
 SAME_TIME_S = 1e-7  # what is due within this is due now: 0.1 s three times is not 0.3 s in floating point
 
 # what a row of the schedule does; at one time they are done in the order of the rows
-MAGNETOMETER, GYRO, SUN_SENSOR, STAR_TRACKER, NAVIGATION, TASK, TORQUE_OFF, TORQUE_ON, OUTPUT = range(9)
+MAGNETOMETER, GYRO, SUN_SENSOR, STAR_TRACKER, NAVIGATION, TASK, TORQUE_OFF, TORQUE_ON, OUTPUT, AMBIENT = range(10)
 ECLIPSE, ALTITUDE, RATE, USER_EVENT = range(4)  # kinds of events
 # kinds of actuators, in the order of the axis of actuators
 DIPOLE, WHEEL, THRUST, CONDUCTOR, CIRCUIT, REEL, SLIDER = range(7)
@@ -98,6 +98,8 @@ class Boards(NamedTuple):
     tension: np.ndarray
     line_length: np.ndarray
     line_rate: np.ndarray
+    relative_position_i: np.ndarray
+    relative_velocity_i: np.ndarray
     faces: np.ndarray  # (bodies,) int64, how many of the columns of sun_sensor are this body's
     wheels: np.ndarray  # (bodies,) int64
     lines: np.ndarray  # (bodies,) int64, how many lines are attached
@@ -163,7 +165,7 @@ class Record(NamedTuple):
     nodes: np.ndarray  # (rows, lines) int64 nodes that are out
     tension: np.ndarray  # (rows, segments) [N]
     current: np.ndarray  # (rows, segments) [A]
-    circuit: np.ndarray  # (rows, lines, 2) electromotive force [V] and power delivered [W]
+    circuit: np.ndarray  # (rows, lines, 8) electromotive force [V], power delivered [W], force of field and of air, axes i [N]
     samples: np.ndarray  # (samples, 2 + widest): row of the schedule, time, readings
     start: np.ndarray  # (bodies, 4), z and rate (n,): scratch of the log of loads
     z: np.ndarray

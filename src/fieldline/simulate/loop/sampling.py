@@ -13,7 +13,7 @@ from fieldline.frames.attitude import to_body
 from fieldline.frames.vectors import sub, unit
 from fieldline.sensing.gyro import read_gyro
 from fieldline.sensing.magnetometer import read_magnetometer
-from fieldline.sensing.navigation import read_navigation
+from fieldline.sensing.navigation import read_navigation, read_relative
 from fieldline.sensing.star_tracker import read_star_tracker
 from fieldline.sensing.sun_sensor import read_sun_sensor
 from fieldline.simulate.loop.flight_software import measurement_of
@@ -52,6 +52,8 @@ def sample(t, row, kind, b, run, rng):
         keep(t, row, board.rate_b, record, clock)
     elif kind == NAVIGATION:
         read_navigation(r, v, suite.navigations, b, rng, board)
+        if b > 0:
+            read_relative(sub(r, three(y, 0)), sub(v, three(y, 3)), suite.navigations, b, rng, board)
         keep(t, row, board.position_i, record, clock)
     else:
         sun_i = sun_kernel(t, plant.surroundings.ephemeris)

@@ -149,7 +149,8 @@ def _laws(scenario) -> Iterator[tuple[str, str]]:
                     f'"{law.name}" has no such parameter; {nearest(key, law.parameters)}',
                 )
         body = scenario.body[scenario.index_of(task.body)]
-        yield from actuators_missing(f"software[{k}].law", law.commands, scenario, body)
+        needed = [command for command in law.commands if command not in getattr(law, "optional", ())]
+        yield from actuators_missing(f"software[{k}].law", needed, scenario, body)
 
 
 def _warnings(scenario) -> Iterator[str]:
