@@ -145,7 +145,7 @@ def settings_of(job: Job, calibration: Any = "none") -> Any:
     """The options as the estimator takes them, refused in words where they cannot be."""
     from fieldline.estimation.skiprope_telemetry import Mounting, SkipropeSettings
 
-    mounting = {name: job.settings[name] for name in ("sensor_axes", "attitude_deg", "tether")}
+    mounting = {name: job.settings[name] for name in ("sensor_axes", "attitude_deg", "tether") if name in job.settings}
     others = {name: value for name, value in job.settings.items() if name not in mounting}
     return SkipropeSettings(mounting=Mounting(**mounting), calibration=calibration, **others)
 

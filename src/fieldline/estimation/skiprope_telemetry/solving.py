@@ -16,7 +16,7 @@ from fieldline.estimation.calibrate import calibrate_against, columns_for
 from fieldline.estimation.calibration import Calibration
 from fieldline.estimation.reference import Reference, reference_along_orbit
 from fieldline.estimation.skiprope.signals import ORBITAL_FROM_CONE, SkipropeSignals, skiprope_signals
-from fieldline.estimation.skiprope.solution import SkipropeEstimate, wrapped
+from fieldline.estimation.skiprope.solution import SkipropeEstimate
 from fieldline.estimation.skiprope_telemetry.mounting import Mounting
 from fieldline.estimation.skiprope_telemetry.plane import Crossings, Plane, next_crossings, plane_of
 from fieldline.orbit import Orbit, orbit_from_positions
@@ -143,7 +143,7 @@ def _half_turned(estimate: SkipropeEstimate, mounting: Mounting) -> HalfTurned:
     """The estimate takes the tether's middle half a turn from the lean; where the tether goes up it is on the lean's side."""
     if mounting.half_turn_rad:
         return HalfTurned(estimate.plane_rad, estimate.position_m)
-    return HalfTurned(wrapped(estimate.plane_rad + np.pi), -estimate.position_m)
+    return HalfTurned(estimate.plane_rad - np.copysign(np.pi, estimate.plane_rad), -estimate.position_m)
 
 
 def _own_orbit(rows: Rows) -> Orbit:
