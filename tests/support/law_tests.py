@@ -6,7 +6,14 @@ from fieldline.control import LAWS
 from fieldline.sensing.measurement import new_measurement
 from tiny_flight import TinyFlight
 
-REQUIRED = {"three-coil": {"target_i": (1.0, 0.0, 0.0)}, "two-coil": {"target_i": (1.0, 0.0, 0.0)}}
+REQUIRED = {
+    "three-coil": {"target_i": (1.0, 0.0, 0.0)},
+    "two-coil": {"target_i": (1.0, 0.0, 0.0)},
+    "reel-exponential": {"target_length_m": 2e4},
+    "reel-profile": {"target_length_m": 2e4, "rate_m_s": 2.0},
+    "reel-tension": {"target_length_m": 2e4, "far_mass_kg": 100.0},
+}
+NUMBERS = {"dipole": 3, "wheel_torque": 3, "reel": 1}  # of each group, of what has one reel and nothing else that is told
 FLIGHT = TinyFlight(inertia=(5.0, 6.0, 2.0), altitude_km=600.0, inclination_deg=70.0, moment_max=2.0, period_s=1.0)
 CONTEXT = FLIGHT.context(orbits=1)
 PACKED = {name: law.pack(REQUIRED.get(name, {}), CONTEXT) for name, law in LAWS.items()}
@@ -14,7 +21,9 @@ PACKED = {name: law.pack(REQUIRED.get(name, {}), CONTEXT) for name, law in LAWS.
 
 def known_measurement(field_b=(2e-5, -1e-5, 1.5e-5), omega_b=(0.0, 0.0, 0.0), q_bi=(0.0, 0.0, 0.0, 1.0), time_s=0.0):
     """Everything valid; a place on the orbit, three wheels at rest."""
-    measurement = new_measurement(0, 3)
+    measurement = new_measurement(0, 3, 1)
+    measurement.tension[:], measurement.line_length[:], measurement.line_rate[:] = 5.0, 500.0, 0.1
+    measurement.relative_position_i[:], measurement.relative_velocity_i[:] = (500.0, 20.0, -10.0), (0.1, -0.2, 0.5)
     measurement.field_b[:], measurement.field_time_s[0] = field_b, time_s
     measurement.field_i[:] = field_b
     measurement.rate_b[:] = measurement.omega_bi_b[:] = omega_b

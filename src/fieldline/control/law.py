@@ -45,13 +45,22 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class LineEnd:
+    """End of a line on the body: attachment [m], mode of a reel there ("" for none), directions in which it slides."""
+
+    point_b_m: tuple[float, float, float]
+    reel: str = ""
+    slider_axes_b: tuple[tuple[float, float, float], ...] = ()
+
+
+@dataclass(frozen=True)
 class DesignContext:
     """What a gain may be derived from: the spacecraft, its orbit and the nominal field along it.
 
     inertia_kg_m2 (3, 3); mean_motion_rad_s; inclination_rad; period_s between two calls of the law; moment_max_a_m2 (3,)
     of the torquers about the body axes; wheel_axes_b (n, 3) unit vectors; field_along_orbit() gives seconds (n,) and the
     on-board model's field [T] in orbital and in inertial axes, (n, 3) each, over one orbit or more; mass_kg, conductors and
-    thrusters (records) of the body, radius_m of its orbit.
+    thrusters (records) of the body, radius_m of its orbit; lines that are attached to it, in the order of the measurement.
     """
 
     inertia_kg_m2: np.ndarray
@@ -65,6 +74,7 @@ class DesignContext:
     radius_m: float = np.nan
     conductors: tuple = ()
     thrusters: tuple = ()
+    lines: tuple[LineEnd, ...] = ()
 
 
 @dataclass(frozen=True)

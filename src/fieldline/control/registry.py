@@ -7,15 +7,28 @@ from fieldline.control import (
     magnetic_pd,
     mode_manager,
     momentum,
+    reel,
     regulator_design,
     residual_dipole,
+    tethered_attitude,
     tracking_line,
     wheel_pointing,
 )
 from fieldline.control.law import Law
 from fieldline.errors import InputError, nearest, shown
 
-_FAMILIES = (b_dot, tracking_line, momentum, wheel_pointing, magnetic_pd, regulator_design, residual_dipole, mode_manager)
+_FAMILIES = (
+    b_dot,
+    tracking_line,
+    momentum,
+    wheel_pointing,
+    magnetic_pd,
+    regulator_design,
+    residual_dipole,
+    mode_manager,
+    reel,
+    tethered_attitude,
+)
 
 LAWS: dict[str, Law] = {law.name: law for family in _FAMILIES for law in family.LAWS}
 

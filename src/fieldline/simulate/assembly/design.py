@@ -43,7 +43,22 @@ class Design:
             radius_m=float(axis),
             conductors=body.conductor,
             thrusters=body.thruster,
+            lines=line_ends_on(self._scenario, body.name),
         )
+
+
+def line_ends_on(scenario, name: str):
+    """Ends of lines on a body, as its laws know them."""
+    from fieldline.control.law import LineEnd
+
+    found = []
+    for line in scenario.line:
+        for end in ("from", "to"):
+            if getattr(line, f"{end}_body") == name:
+                reel = line.reel.mode if end == "to" and line.reel is not None else ""
+                axes = tuple(one.axis_b for one in line.slider if one.end == end)
+                found.append(LineEnd(getattr(line, f"{end}_point_b_m"), reel, axes))
+    return tuple(found)
 
 
 def field_along(scenario, b: int, period_s: float):
