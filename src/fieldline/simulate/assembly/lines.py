@@ -8,9 +8,14 @@ one and a half of a full one.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from fieldline.dynamics.parameters import NO_REEL, RATE_REEL, TENSION_REEL, Lines, Sliders
+
+if TYPE_CHECKING:
+    from fieldline.analysis.tether import Strand
 
 REELS = {"rate": RATE_REEL, "tension": TENSION_REEL}
 MATERIAL = {
@@ -102,6 +107,16 @@ def mass_out(line) -> float:
 def _span(line) -> tuple[float, float]:
     """Least and largest unstretched length out [m]."""
     return (0.0, line.rest_length_m) if line.reel is None else (line.reel.shortest_length_m, line.reel.total_length_m)
+
+
+def strand_of(line) -> Strand:
+    """The segments that are out at the start."""
+    from fieldline.analysis.tether import Strand
+
+    out, materials = nodes_out(line), _materials(line)
+    rest = np.full(out + 1, spacing(line))
+    rest[-1] = last_length(line)
+    return Strand(rest, materials["stiffness_n"][: out + 1], materials["mass_per_length_kg_m"][: out + 1])
 
 
 def _lag(reel) -> float:

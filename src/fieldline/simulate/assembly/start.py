@@ -9,6 +9,7 @@ from fieldline.dynamics.parameters import STATE, Plant, state_size
 from fieldline.dynamics.rates import field_at
 from fieldline.environment.ephemeris import dcm_ei_kernel
 from fieldline.frames.attitude import to_body
+from fieldline.simulate.assembly.hanging import hang_bodies
 from fieldline.simulate.assembly.line_start import start_lines
 from fieldline.simulate.assembly.plant import each
 from fieldline.simulate.scenario.attitudes import start_attitude
@@ -34,7 +35,7 @@ def start_of(scenario, plant: Plant, seed: int) -> np.ndarray:
     for k, (_, one) in enumerate(each(scenario.body, "wheel")):
         y[base + k] = one.momentum_n_m_s
     _rods(scenario, plant, y)
-    start_lines(scenario, plant, y)
+    start_lines(scenario, plant, y, hang_bodies(scenario, y))
     return y
 
 

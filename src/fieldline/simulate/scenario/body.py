@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from fieldline.records import Record, RecordError
 from fieldline.records.values import Quaternion, Vector
 from fieldline.sensing.sensors import DutyCycle, Gyro, Magnetometer, Navigation, Onboard, StarTracker, SunSensor
+from fieldline.simulate.scenario.hang import Hang
 from fieldline.simulate.scenario.orbit_start import OrbitStart
 from fieldline.vehicle.vehicle import Vehicle
 
@@ -65,6 +66,7 @@ class Body(Vehicle):
         description="place from the first body, its orbital axes: along the track, against the orbit normal, down [m]",
     )
     offset_rate_o_m_s: Vector = Field(default=NONE, description="rate of offset_o_m as seen in the turning orbital axes [m/s]")
+    hang: Hang | None = Field(default=None, description="place at the end of a taut line whose other end is on an earlier body")
     magnetometer: Magnetometer | None = Field(default=None, description="three-axis magnetometer")
     gyro: Gyro | None = Field(default=None, description="rate gyro")
     sun_sensor: SunSensor | None = Field(default=None, description="sun sensors")
@@ -83,8 +85,8 @@ class Body(Vehicle):
             found.append(("", "give only one of rate_deg_s and random_rate_deg_s"))
         if self.rate_axes != "gcrs" and self.rate_deg_s is None:
             found.append(("rate_axes", "has a meaning for rate_deg_s alone; leave it out"))
-        if self.orbit is not None and self.offset_o_m is not None:
-            found.append(("", "give only one of orbit and offset_o_m"))
+        if sum(one is not None for one in (self.orbit, self.offset_o_m, self.hang)) > 1:
+            found.append(("", "give only one of orbit, offset_o_m and hang"))
         if self.offset_rate_o_m_s != NONE and self.offset_o_m is None:
             found.append(("offset_rate_o_m_s", "has a meaning beside offset_o_m alone; give that too"))
         if self.duty_cycle is not None and not self.magnetorquer:

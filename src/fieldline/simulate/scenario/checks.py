@@ -33,9 +33,32 @@ def _starts(scenario) -> Found:
         yield "body[0].orbit", "is given beside [orbit], which is the first body's; leave one of them out"
     if first.offset_o_m is not None:
         yield "body[0].offset_o_m", "has no meaning for the first body, from which the others are counted; leave it out"
+    if first.hang is not None:
+        yield "body[0].hang", "has no meaning for the first body, from which the others hang; leave it out"
     for k, body in enumerate(scenario.body[1:], start=1):
-        if body.orbit is None and body.offset_o_m is None:
-            yield f"body[{k}]", "has no start: give offset_o_m from the first body, or an orbit of its own"
+        if body.hang is not None:
+            yield from _hangs(scenario, k, body)
+        elif body.orbit is None and body.offset_o_m is None:
+            yield f"body[{k}]", "has no start: give offset_o_m from the first body, hang on a line, or an orbit of its own"
+
+
+def _hangs(scenario, k: int, body) -> Found:
+    """A body hangs on one line, whose other end is on an earlier body."""
+    names = [line.name or f"line_{j}" for j, line in enumerate(scenario.line, start=1)]
+    mine = [j for j, line in enumerate(scenario.line) if body.name in (line.from_body, line.to_body)]
+    if body.hang.line and body.hang.line not in names:
+        yield f"body[{k}].hang.line", f'names no [[line]]: "{body.hang.line[:40]}"; {nearest(body.hang.line, names)}'
+        return
+    chosen = [names.index(body.hang.line)] if body.hang.line else mine
+    if len(chosen) != 1 or chosen[0] not in mine:
+        ends = ", ".join(names[j] for j in mine) or "none"
+        yield f"body[{k}].hang.line", f"must be a line that ends on this body: {ends}"
+        return
+    line = scenario.line[chosen[0]]
+    other = line.to_body if line.from_body == body.name else line.from_body
+    known = [one.name for one in scenario.body[:k]]
+    if other not in known:
+        yield f"body[{k}].hang", f'hangs from "{other[:40]}", which must come before it among the bodies'
 
 
 def _names(scenario) -> Found:

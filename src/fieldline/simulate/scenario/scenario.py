@@ -16,7 +16,7 @@ from fieldline.simulate.scenario.integrator import Integrator
 from fieldline.simulate.scenario.orbit_start import OrbitStart
 from fieldline.simulate.scenario.software import Software
 from fieldline.simulate.scenario.span import Span
-from fieldline.vehicle.line import Line
+from fieldline.simulate.scenario.tether_line import TetherLine
 
 MOST_BODIES = 10_000
 
@@ -40,7 +40,7 @@ class Scenario(Record):
     body: Annotated[tuple[Body, ...], Field(strict=False, min_length=1, max_length=MOST_BODIES)] = Field(
         description="the bodies, in the order of the results"
     )
-    line: Annotated[tuple[Line, ...], Field(strict=False)] = Field(default=(), description="lines between bodies")
+    line: Annotated[tuple[TetherLine, ...], Field(strict=False)] = Field(default=(), description="lines between bodies")
     software: Annotated[tuple[Software, ...], Field(strict=False)] = Field(default=(), description="tasks of the flight software")
     event: Annotated[tuple[Event, ...], Field(strict=False)] = Field(default=(), description="events that are watched")
 

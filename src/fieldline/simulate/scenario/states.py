@@ -26,6 +26,8 @@ SECONDS_PER_HOUR = 3600.0
 def start_states(scenario) -> list[tuple[np.ndarray, np.ndarray]]:
     """(position_i [m], velocity_i [m/s]) of each body at the scenario's start.
 
+    A body that hangs on a line is where its attachment will be: the lever is added when its attitude is known.
+
     Errors: InputError for an orbit file that is missing, damaged or too old.
     """
     eop = earth_orientation(scenario)
@@ -33,8 +35,14 @@ def start_states(scenario) -> list[tuple[np.ndarray, np.ndarray]]:
     first = scenario.body[0].orbit or scenario.orbit
     states = [state_of(first, when, folder, eop)]
     for body in scenario.body[1:]:
-        beside = body.offset_o_m is not None
-        states.append(_beside(states[0], body) if beside else state_of(body.orbit, when, folder, eop))
+        if body.hang is not None:
+            from fieldline.simulate.assembly.hanging import hung
+
+            states.append(hung(scenario, body, states))
+        elif body.offset_o_m is not None:
+            states.append(_beside(states[0], body))
+        else:
+            states.append(state_of(body.orbit, when, folder, eop))
     return states
 
 
