@@ -40,10 +40,10 @@ def rod_frequencies(
         """(2) without its poles."""
         return (p * q * z * z - 1.0) * np.sin(z) - (p + q) * z * np.cos(z)
 
-    # between (k - 1) pi and k pi there is one root
-    edge = 1e-6
-    roots = [brentq(balance, np.pi * k + edge, np.pi * (k + 1) + edge, xtol=1e-14) for k in range(count)]
-    return np.array(roots) / length_m * np.sqrt(stiffness_n / linear_mass_kg_m)
+    wave = np.pi * np.arange(1, count + 1)
+    if p + q > 0.0:  # one root in each half wave; without bodies they are its ends
+        wave = np.array([brentq(balance, max(end - np.pi, 1e-9), end, xtol=1e-15, rtol=1e-14) for end in wave])
+    return wave / length_m * np.sqrt(stiffness_n / linear_mass_kg_m)
 
 
 def string_frequency(rest_m, tension_n, linear_mass_kg_m, stiffness_n: float, half_waves: int) -> float:

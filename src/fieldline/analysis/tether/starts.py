@@ -26,6 +26,8 @@ from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.errors import InputError
 from fieldline.frames.orbital import dcm_oi
 
+PACE_S = 1.0  # step of the difference that tells how fast a swinging line stretches
+
 
 class Ends(NamedTuple):
     """The two attachments, (3,) each: places [m] and velocities [m/s], inertial axes."""
@@ -96,19 +98,44 @@ def librating(
     InputError : a line that stretches without end, or angles at which it would be pushed together.
     """
     position = np.asarray(position_i, dtype=float)
-    dcm = dcm_oi(position, velocity_i)
-    away = 1.0 if not upward else -1.0
-    e = away * direction_o(in_plane_rad, across_rad) @ dcm
-    turn = away * direction_rate_o(in_plane_rad, across_rad, in_plane_rate_rad_s, across_rate_rad_s) @ dcm
+    dcm, away = dcm_oi(position, velocity_i), -1.0 if upward else 1.0
     masses = point_masses(strand, mass_a_kg, mass_b_kg)
+    angles = np.array([in_plane_rad, across_rad, in_plane_rate_rad_s, across_rate_rad_s], dtype=float)
+    state = _rod(position, dcm, angles, away, strand, masses, gm_m3_s2)
+    if rod_tension(state, masses, gm_m3_s2).min() < 0.0:
+        raise InputError(
+            "at this angle and rate of libration the line would be pushed, not pulled: start it nearer the vertical."
+        )
+    n = float(np.linalg.norm(state.velocity_i[0])) / float(np.linalg.norm(position))
+    after, before = (
+        _rod(position, dcm, angles + h * libration_rates(angles, n), away, strand, masses, gm_m3_s2) for h in (PACE_S, -PACE_S)
+    )
+    longer = _from_a(after.position_i) - _from_a(before.position_i)
+    e = (state.position_i[-1] - position) / np.linalg.norm(state.position_i[-1] - position)
+    return LineState(state.position_i, state.velocity_i + longer[:, None] / (2.0 * PACE_S) * e)
+
+
+def libration_rates(angles: np.ndarray, n: float) -> np.ndarray:
+    """(4,) rates of (a, b, a', b') of a straight short line in a circular orbit of rate n [rad/s].
+
+    a'' = 2 (n + a') b' tan b - 3 n^2 sin a cos a,    b'' = -{(n + a')^2 + 3 n^2 cos^2 a} sin b cos b        (2)
+    """
+    a, b, da, db = angles
+    in_plane = 2.0 * (n + da) * db * np.tan(b) - 3.0 * n**2 * np.sin(a) * np.cos(a)
+    across = -((n + da) ** 2 + 3.0 * n**2 * np.cos(a) ** 2) * np.sin(b) * np.cos(b)
+    return np.array([da, db, in_plane, across])
+
+
+def _rod(position, dcm, angles, away: float, strand: Strand, masses: np.ndarray, gm: float) -> LineState:
+    """A line from A that turns as a rod, as long as its tension makes it; `away`: 1 down from A, -1 up."""
+    e, turn = (away * part @ dcm for part in (direction_o(*angles[:2]), direction_rate_o(*angles)))
     lengths = np.array(strand.rest, dtype=float)
     for _ in range(100):
         along = np.concatenate([[0.0], np.cumsum(lengths)])[:, None]
         points = position + along * e
-        spin = -_circular_rate(points, masses, gm_m3_s2) * dcm[1]
+        spin = -_circular_rate(points, masses, gm) * dcm[1]
         state = LineState(points, np.cross(spin, points) + along * turn)
-        tension = rod_tension(state, masses, gm_m3_s2)
-        longer = strand.rest * (1.0 + tension / strand.stiffness)
+        longer = strand.rest * (1.0 + rod_tension(state, masses, gm) / strand.stiffness)
         if not np.all((longer > 0.5 * strand.rest) & (longer < 2.0 * strand.rest)):
             raise InputError(
                 "the line would stretch to more than twice its length, or be pushed together: is stiffness_n in newtons?"
@@ -116,11 +143,12 @@ def librating(
         if np.abs(longer - lengths).max() <= 1e-15 * along[-1, 0]:
             break
         lengths = longer
-    if tension.min() < 0.0:
-        raise InputError(
-            "at this angle and rate of libration the line would be pushed, not pulled: start it nearer the vertical."
-        )
     return state
+
+
+def _from_a(points: np.ndarray) -> np.ndarray:
+    """(s + 1,) [m] distances from A."""
+    return np.linalg.norm(points - points[0], axis=1)
 
 
 def rod_tension(state: LineState, masses: np.ndarray, gm_m3_s2: float = EARTH_GM_M3_S2) -> np.ndarray:

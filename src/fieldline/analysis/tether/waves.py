@@ -2,10 +2,10 @@
 
 Seen in the axes of the line (`fieldline.analysis.tether.axes`), the deflections in the plane (e_1) and across it (e_2) are
 
-    x = A f(s) cos(p),    y = +-A f(s) sin(p),    dx/dt = -A wx f(s) sin(p),    dy/dt = +-A wy f(s) cos(p)   (1)
+    x = A f(s) cos(p),    y = A f(s) sin(p),    dx/dt = -+A wx f(s) sin(p),    dy/dt = +-A wy f(s) cos(p)    (1)
 
-for a skiprope that goes round right-handed (+) about the direction down the line, or left-handed (-), p its phase; a swing in
-one plane at the angle p from e_1 has y = A f sin(p) and no speed. f is the shape of the mode less the straight line between
+p: its phase, from e_1 to e_2. Of the signs the upper are those of a skiprope that goes round right-handed about the direction
+down the line, the lower left-handed; a swing in one plane has no speed. f is the shape of the mode less the straight line between
 its ends, so that the bodies stay where they are: with a body that is not heavy against the line a little libration starts
 with it. f is 1 where it is largest. The rates are
 
@@ -69,11 +69,9 @@ def skiprope(
     masses = point_masses(strand, mass_a_kg, mass_b_kg)
     lateral = lateral_mode(state, strand, masses, mode, gm_m3_s2)
     frame = frame_of(state, masses)
-    turning = SENSES[sense]
-    side = turning if turning else 1.0
     cosine, sine = np.cos(phase_rad), np.sin(phase_rad)
-    place = amplitude_m * np.array([cosine, side * sine, 0.0])
-    speed = amplitude_m * np.array([-abs(turning) * lateral.in_plane * sine, turning * lateral.out_of_plane * cosine, 0.0])
+    place = amplitude_m * np.array([cosine, sine, 0.0])
+    speed = SENSES[sense] * amplitude_m * np.array([-lateral.in_plane * sine, lateral.out_of_plane * cosine, 0.0])
     shape = lateral.shape[:, None]
     return LineState(
         state.position_i + shape * (place @ frame.axes),
