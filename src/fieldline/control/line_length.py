@@ -10,7 +10,8 @@ line of two masses obeys, for small ph and with e = L'/L,
 
 so that paid out at e = c it leans by sin 2 th = 4 c / (3 n), and no angle holds it beyond c = 3 n / 4. Reeled in it
 swings ever wider. (50) makes the in-plane swing decay at n K_th, less c_in, whatever its size; out of the plane it pays
-out as the line swings through the vertical and takes in where it turns, which holds the swing to ph^2 = 2 c_in / (n K_ph).
+out as the line swings through the vertical and takes in where it turns, which holds a small swing to about
+ph^2 = 2 c_in / (n K_ph).
 
 Sources: Rupp (1975), NASA TM X-64963; SAO (1982), section 3.2, after Kalaghan et al. (1978), for deployment; (51) from
 the equations of two masses on a massless line, own derivation.

@@ -1,9 +1,10 @@
 """Laws of a reel: rates, a profile, and Rupp's tension.
 
     reel-exponential    u = r of (50)                                                                      (52)
-    reel-profile        u -> sign(L_t - L) min(u_max, sqrt(2 a |L_t - L|), |L_t - L| / t_s), at most a per second  (53)
+    reel-profile        u -> +-min(u_max, sqrt(a (2 x - a t_s^2))), or x / t_s where x = |L_t - L| < a t_s^2  (53)
     reel-tension        T = m (3 n^2 L + k (L' - r)),   m = m_far + mu L / 2                               (54)
 
+(53) speeds up by a per second and slows down by it, and dies away with t_s over the last metres.
 With the defaults k = 4 n and, in (50), a = 0.75 n, (54) is near its target T = m (3 n^2 L + 4 n L' + 3 n^2 (L - L_t)):
 stretch e = L / L_t - 1 and swing th in the orbit's plane then obey
 
@@ -58,8 +59,9 @@ def reel_profile(t, measurement, memory, params):
         memory[CALLED] = t
         memory[HAS_CALLED] = 1.0
     left = params[TARGET] - measurement.line_length[j]
-    size = min(params[SPEED], min(sqrt(2.0 * params[ACCELERATION] * abs(left)), abs(left) / params[SETTLING]))
-    wanted = size if left > 0.0 else -size
+    last = params[ACCELERATION] * params[SETTLING] ** 2
+    size = sqrt(params[ACCELERATION] * (2.0 * abs(left) - last)) if abs(left) > last else abs(left) / params[SETTLING]
+    wanted = min(params[SPEED], size) if left > 0.0 else -min(params[SPEED], size)
     most = params[ACCELERATION] * (t - memory[CALLED])
     memory[CALLED] = t
     slows = wanted * memory[ASKED] >= 0.0 and abs(wanted) < abs(memory[ASKED])
