@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.compiled import inner, kernel, merged
+from fieldline.dynamics.implicit_arrays import Implicit, new_implicit
 from fieldline.dynamics.layout import store, three
 from fieldline.dynamics.lines.chain import END_MASS
 from fieldline.dynamics.load_log import LOADS
@@ -34,6 +35,7 @@ class Work(NamedTuple):
     start: np.ndarray  # (bodies, 4) attitudes at the step's start
     frozen: np.ndarray  # (bodies, 3) field in mid-step, where it is taken once a step; else (0, 3)
     log: np.ndarray  # (0, bodies, 6), or (loads, bodies, 6) to keep every load
+    implicit: Implicit  # without rows where an explicit method steps the plant
 
 
 class Shared(NamedTuple):
@@ -50,7 +52,7 @@ class Shared(NamedTuple):
     culprit: np.ndarray  # (3,) int64: task, load or event at fault, how many numbers it returned, which compiled kind runs
 
 
-def new_work(plant: Plant, evaluations: int, *, once_a_step: bool = False, loads: int = 0) -> Work:
+def new_work(plant: Plant, evaluations: int, *, once_a_step: bool = False, loads: int = 0, implicit: bool = False) -> Work:
     """Arrays for a plant and a method of so many evaluations; `loads` rows of log."""
     n, bodies = tangent_size(plant), len(plant.bodies.mass)
     return Work(
@@ -63,6 +65,7 @@ def new_work(plant: Plant, evaluations: int, *, once_a_step: bool = False, loads
         start=np.zeros((bodies, 4)),
         frozen=np.zeros((bodies if once_a_step else 0, 3)),
         log=np.zeros((loads, bodies, 6)),
+        implicit=new_implicit(plant, implicit),
     )
 
 

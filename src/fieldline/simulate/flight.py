@@ -14,6 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fieldline.dynamics.implicit_step import EVALUATIONS
 from fieldline.dynamics.layout import starts_in_state
 from fieldline.dynamics.parameters import TANGENT, tangent_size
 from fieldline.dynamics.rates import EVENT_AT_WORK, LAW_AT_WORK, LOAD_AT_WORK
@@ -73,8 +74,12 @@ class Flight:
         self.events = events_of(scenario, user.events)
         self.record = made.record_of(scenario, self.plant, self.schedule, len(self.actuators.body), self.duration_s)
         self.clock = made.clock_of(scenario.integrator.step_s)
+        implicit = scenario.integrator.method == "rosenbrock"
         self.work = new_work(
-            self.plant, self.stepping.tableau.evaluations, once_a_step=scenario.integrator.field_update == "step"
+            self.plant,
+            EVALUATIONS if implicit else self.stepping.tableau.evaluations,
+            once_a_step=scenario.integrator.field_update == "step",
+            implicit=implicit,
         )
         self.loads = user.slots.filled()
         self.run = Run(
@@ -135,10 +140,10 @@ def as_seed(seed: int) -> int:
 def stepping_of(scenario, plant, duration_s: float) -> Stepping:
     """Method, step and tolerances."""
     integrator = scenario.integrator
-    adaptive = integrator.method == "dop853"
+    adaptive = integrator.method != "rk4"
     absolute = np.full(tangent_size(plant), integrator.rate_tolerance_rad_s)
     allowed = [integrator.position_tolerance_m] * 3 + [integrator.velocity_tolerance_m_s] * 3
-    allowed += [integrator.angle_tolerance_rad] * 3 + [integrator.rate_tolerance_rad_s] * 3
+    allowed += [integrator.angle_allowed_rad] * 3 + [integrator.rate_tolerance_rad_s] * 3
     bodies = len(plant.bodies.mass)
     for b in range(bodies):
         absolute[TANGENT * b : TANGENT * (b + 1)] = allowed

@@ -4,9 +4,9 @@
         do what is due at t, in the order of the schedule's rows; let commands that are due take effect
         step the plant to the next time at which anything is due
 
-RK4 divides the way to the next such time into equal steps of at most the given length; DOP853 chooses its steps by their
-error and interpolates outputs, which do not bind it. Where an event stops the run, the last row is that moment. The loop
-returns after `budget` steps, and goes on where it was when it is called again.
+RK4 divides the way to the next such time into equal steps of at most the given length; DOP853 and the implicit method
+choose their steps by their error and interpolate outputs, which do not bind them. Where an event stops the run, the last
+row is that moment. The loop returns after `budget` steps, and goes on where it was when it is called again.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from math import ceil
 from fieldline.compiled import inner, kernel, merged
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M
 from fieldline.dynamics.layout import nodes_at, three
+from fieldline.dynamics.implicit_step import allow_motion, attempt_implicit
 from fieldline.dynamics.lines.chain import slide
 from fieldline.dynamics.loads.magnetic import torquer_moment
 from fieldline.dynamics.parameters import STATE
@@ -24,6 +25,7 @@ from fieldline.dynamics.step import attempt, lift, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
 from fieldline.frames.vectors import norm, put
+from fieldline.integrate.rosenbrock import stage_error
 from fieldline.integrate.steps import error_norm, error_scale, next_step
 from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, next_filling, obey, switch_torquers
 from fieldline.simulate.loop.flight_software import run_task
@@ -221,6 +223,17 @@ def interpolated_rows(t, h, last, ready, run, loads, call):
             due = schedule.phase[j] + schedule.count[j] * schedule.period[j]
 
 
+@inner
+def step_error(h, implicit, plant, stepping, work):
+    """Error of an adaptive step over what is allowed."""
+    error_scale(work.z, work.z1, stepping.absolute, stepping.relative, work.scale)
+    if implicit:
+        allow_motion(h, plant, work.scale)
+        return stage_error(work.k, work.implicit.method.error, work.scale)
+    work.k[stepping.tableau.b.shape[0], :] = 0.0  # its weight in the error is zero
+    return error_norm(h, work.k, stepping.tableau.e3, stepping.tableau.e5, work.scale)
+
+
 @merged
 def advance(t, due, run, loads, call):
     """One step of the plant towards `due`; (outcome, time reached)."""
@@ -232,16 +245,18 @@ def advance(t, due, run, loads, call):
         if h < 0.0:
             return COARSE, t
     refused = False
+    implicit = work.implicit.rate.shape[0] > 0
     while True:
-        status = attempt(t, h, run.y, plant, run.inputs, stepping.tableau, loads, call, shared, work)
+        if implicit:
+            status = attempt_implicit(t, h, run.y, plant, run.inputs, loads, call, shared, work)
+        else:
+            status = attempt(t, h, run.y, plant, run.inputs, stepping.tableau, loads, call, shared, work)
         if status != 0:
             return load_outcome(status), t
         if not stepping.adaptive:
             break
-        error_scale(work.z, work.z1, stepping.absolute, stepping.relative, work.scale)
-        work.k[stepping.tableau.b.shape[0], :] = 0.0  # its weight in the error is zero
-        error = error_norm(h, work.k, stepping.tableau.e3, stepping.tableau.e5, work.scale)
-        proposed = next_step(h, error, stepping.tableau.order, refused)
+        error = step_error(h, implicit, plant, stepping, work)
+        proposed = next_step(h, error, work.implicit.method.order if implicit else stepping.tableau.order, refused)
         if error <= 1.0:
             # A step cut short by what was due says little about how long the next may be.
             clock.h[0] = min(stepping.step, max(proposed, clock.h[0] if h < clock.h[0] else 0.0))

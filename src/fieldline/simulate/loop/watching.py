@@ -11,6 +11,7 @@ from __future__ import annotations
 from math import nan
 
 from fieldline.compiled import inner
+from fieldline.dynamics.implicit_step import implicit_interpolant
 from fieldline.dynamics.layout import three
 from fieldline.dynamics.parameters import PLAIN_LOAD, STATE
 from fieldline.dynamics.rates import EVENT_AT_WORK, FINITE, ask, plant_rates
@@ -66,6 +67,9 @@ def quantity(t, k, y, run, loads, call):
 def interpolant(t, h, run, loads, call):
     """Coefficients of the state within the step just taken, into work.dense."""
     plant, inputs, stepping, shared, work = run.plant, run.inputs, run.stepping, run.shared, run.work
+    if work.implicit.rate.shape[0] > 0:
+        implicit_interpolant(t, h, plant, inputs, loads, call, shared, work)
+        return
     stages = stepping.tableau.b.shape[0]
     closing_rates(t, h, plant, inputs, loads, call, shared, work, stages)
     extra = stepping.tableau.c_extra.shape[0]

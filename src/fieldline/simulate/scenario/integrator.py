@@ -10,20 +10,34 @@ from fieldline.records import Record, RecordError
 
 
 class Integrator(Record):
-    """Classical Runge-Kutta of a fixed step, or Dormand-Prince 8(5,3) of an error tolerance."""
+    """Runge-Kutta of a fixed step; Dormand-Prince 8(5,3), or a method implicit in stiff lines, of an error tolerance."""
 
-    method: Literal["rk4", "dop853"] = Field(
-        default="rk4", description='"rk4": fourth order, fixed step; "dop853": eighth order, step chosen by the error'
+    method: Literal["rk4", "dop853", "rosenbrock"] = Field(
+        default="rk4",
+        description='"rk4": fourth order, fixed step; "dop853": eighth order, step chosen by the error; "rosenbrock": third '
+        "order, implicit in what stretches lines, so that their stiffness does not bind the step, which the error chooses",
     )
     step_s: float = Field(
-        default=1.0, gt=0.0, description="step of rk4, first trial step of dop853 [s]; steps also end at each reading and command"
+        default=1.0, gt=0.0, description="step of rk4, first trial of the others [s]; steps also end at each reading and command"
     )
-    step_max_s: float | None = Field(default=None, gt=0.0, description="largest step of dop853 [s]; no limit by default")
-    relative_tolerance: float = Field(default=1e-9, ge=1e-14, le=1e-2, description="error of a step over the state, dop853 [-]")
-    position_tolerance_m: float = Field(default=1e-3, gt=0.0, description="error of a step in position, dop853 [m]")
-    velocity_tolerance_m_s: float = Field(default=1e-6, gt=0.0, description="error of a step in velocity, dop853 [m/s]")
-    angle_tolerance_rad: float = Field(default=1e-9, gt=0.0, description="error of a step in attitude, dop853 [rad]")
-    rate_tolerance_rad_s: float = Field(default=1e-10, gt=0.0, description="error of a step in angular rate, dop853 [rad/s]")
+    step_max_s: float | None = Field(
+        default=None, gt=0.0, description="largest step of dop853 and rosenbrock [s]; no limit by default"
+    )
+    relative_tolerance: float = Field(
+        default=1e-9, ge=1e-14, le=1e-2, description="error of a step over the state, dop853 and rosenbrock [-]"
+    )
+    position_tolerance_m: float = Field(
+        default=1e-3, gt=0.0, description="error of a step in position, dop853 and rosenbrock [m]"
+    )
+    velocity_tolerance_m_s: float = Field(
+        default=1e-6, gt=0.0, description="error of a step in velocity; rosenbrock also allows position_tolerance_m a step [m/s]"
+    )
+    angle_tolerance_rad: float | None = Field(
+        default=None, gt=0.0, description="error of a step in attitude [rad]; by default 1e-9 for dop853, 1e-6 for rosenbrock"
+    )
+    rate_tolerance_rad_s: float = Field(
+        default=1e-10, gt=0.0, description="error of a step in angular rate; rosenbrock also allows the angle's a step [rad/s]"
+    )
     field_update: Literal["stage", "step"] = Field(
         default="stage",
         description='magnetic field at each stage of a step, or, with rk4, once per "step": faster, second order in the step',
@@ -37,8 +51,13 @@ class Integrator(Record):
                 [
                     (
                         "field_update",
-                        'must be "stage" for method = "dop853", whose error control does not see what "step" leaves out',
+                        'must be "stage" where the step is adaptive: its error control does not see what "step" leaves out',
                     )
                 ]
             )
         return self
+
+    @property
+    def angle_allowed_rad(self) -> float:
+        """Error of a step in attitude [rad]."""
+        return self.angle_tolerance_rad or (1e-6 if self.method == "rosenbrock" else 1e-9)

@@ -73,8 +73,8 @@ def _integrator(scenario, length_s: float) -> str:
     """Method, step, and what it costs."""
     one = scenario.integrator
     field = "at each stage" if one.field_update == "stage" else "once per step"
-    if one.method == "dop853":
-        return f"dop853, relative tolerance {one.relative_tolerance:g}, field {field}"
+    if one.method != "rk4":
+        return f"{one.method}, relative tolerance {one.relative_tolerance:g}, field {field}"
     steps = length_s / longest_step_s(scenario)
     return f"rk4, step {one.step_s:g} s, field {field}: at least {steps:,.0f} steps"
 
