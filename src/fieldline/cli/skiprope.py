@@ -13,7 +13,7 @@ import typer
 from fieldline.cli import options
 from fieldline.cli.attitude import read_calibration
 from fieldline.cli.inputs import Source, orbit_for, read_flight
-from fieldline.cli.outputs import refuse_inputs, stem_of, targets, wrote
+from fieldline.cli.outputs import exists, refuse_inputs, refuse_twins, stem_of, targets, wrote
 from fieldline.cli.progress import Progress, progress_on_stderr
 from fieldline.errors import InputError
 
@@ -32,6 +32,7 @@ class Job:
     settings: dict[str, Any]
     calibration: str = "none"
     report: Path | None = None
+    state: Path | None = None
     figures: bool = False
     quiet: bool = False
     as_json: bool = False
@@ -112,7 +113,7 @@ def skiprope(
     stem = None if live and out is None else stem_of(out, telemetry, "skiprope")
     job = Job(
         telemetry=telemetry, stem=stem, source=source, settings=settings, calibration=calibration, report=report,
-        figures=figures, quiet=quiet, as_json=as_json,
+        state=state, figures=figures, quiet=quiet, as_json=as_json,
     )  # fmt: skip
     if live:
         from fieldline.cli.skiprope_live import Live, watch
@@ -153,6 +154,8 @@ def settings_of(job: Job, calibration: Any = "none") -> Any:
 def output_paths(job: Job) -> dict[str, Path]:
     """Where the files go; refused before any work."""
     if job.stem is None:
+        if job.report is not None or job.figures:
+            raise InputError("a report or figures of the live mode need --out, whose files are written when the stream ends.")
         return {}
     inputs = [job.telemetry, job.source.orbit, job.source.mapping, job.source.eop]
     paths = targets(job.stem, ENDINGS, inputs)
@@ -161,6 +164,10 @@ def output_paths(job: Job) -> dict[str, Path]:
         refuse_inputs([job.report], inputs)
         if not job.report.parent.is_dir():
             raise InputError(f'--report "{job.report}": the folder "{job.report.parent}" does not exist. Make it first.')
+    refuse_twins([*paths.values(), job.state])
+    folder = job.stem.with_name(job.stem.name + "_figures")
+    if job.figures and exists(folder, "--figures") and not folder.is_dir():
+        raise InputError(f'the figures go into the folder "{folder}", but a file of that name is there; choose another --out.')
     return paths
 
 

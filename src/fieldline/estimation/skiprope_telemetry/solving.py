@@ -15,6 +15,7 @@ from fieldline.errors import InputError, NoEstimateError, nearest
 from fieldline.estimation.calibrate import calibrate_against, columns_for
 from fieldline.estimation.calibration import Calibration
 from fieldline.estimation.reference import Reference, reference_along_orbit
+from fieldline.estimation.skiprope.rotary import FEWEST_PERIODS
 from fieldline.estimation.skiprope.signals import ORBITAL_FROM_CONE, SkipropeSignals, skiprope_signals
 from fieldline.estimation.skiprope.solution import SkipropeEstimate
 from fieldline.estimation.skiprope_telemetry.mounting import Mounting
@@ -28,6 +29,7 @@ LENGTH_M = (1.0, 1e6)
 FREQUENCY_HZ = (1e-5, 10.0)
 FASTEST_AVERAGED_HZ = 0.06  # a quicker cone keeps all of its samples
 FEWEST = 30
+SLOW_HZ = 0.003  # what a record should show: the skiprope of a tether of 20 km is above
 LARGEST_MISFIT_DEG = 30.0  # between measured and known direction, in the median
 LARGEST_SHARE = 0.3  # of the field's size
 
@@ -124,6 +126,7 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
     remarks = (*_judge_size(measured, known), *_judge_direction(field_s, measured, known, yaw, settings))
     seconds = (rows.time_utc - rows.time_utc[0]).astype(np.int64) * 1e-9
     signals = skiprope_signals(seconds, measured, known)
+    remarks += _judge_length(signals.span_s, settings.frequency_hz)
     report(settings.method, 0, 1, "")
     estimate = estimate_skiprope(
         signals,
@@ -177,6 +180,19 @@ def _whole(rows: Rows) -> np.ndarray:
     good = np.isfinite(rows.yaw_rad)
     ns = (rows.time_utc - rows.time_utc[0]).astype(np.int64)
     return np.interp(ns, ns[good], np.unwrap(rows.yaw_rad[good]))
+
+
+def _judge_length(span_s: float, frequency_hz: float | None) -> tuple[str, ...]:
+    """A remark on what a short record cannot show; NoEstimateError where the given frequency is among it."""
+    if frequency_hz is not None and span_s * frequency_hz < FEWEST_PERIODS:
+        raise NoEstimateError(
+            f"the record holds {span_s:.0f} s, {span_s * frequency_hz:.1f} periods of {frequency_hz:.4g} Hz; {FEWEST_PERIODS} "
+            "are needed at least. Give a longer record."
+        )
+    slowest_hz = FEWEST_PERIODS / span_s
+    if slowest_hz <= SLOW_HZ:
+        return ()
+    return (f"The record holds {span_s:.0f} s: a skiprope slower than {1e3 * slowest_hz:.3g} mHz would not be seen in it.",)
 
 
 def _judge_size(measured: np.ndarray, known: np.ndarray) -> tuple[str, ...]:
