@@ -30,8 +30,9 @@ from fieldline.control.readings import finite3, lifted, orbit_known
 from fieldline.errors import InputError
 from fieldline.frames.vectors import cross, dot, norm, scale, sub, unit
 
-LINE, TARGET, APPROACH, OUT, IN, FASTEST, IN_PLANE, ACROSS, MOTION = range(9)
-SIZE = 9
+LINE, TARGET, LATER, SECOND, APPROACH, OUT, IN, FASTEST, IN_PLANE, ACROSS, MOTION = range(11)
+SIZE = 11
+NEVER = 1e300  # [s]
 LEAN_RAD = 0.349065850398866  # 20 degrees, of the line while it is paid out at the rate that is derived
 MOST_OF_MOTION = 0.75  # c_out / n beyond which no angle holds the line
 
@@ -60,13 +61,19 @@ def swing(measurement):
 
 
 @njit(cache=True)
-def wanted_rate(measurement, params, first):
+def wanted_length(t, params, first):
+    """L_t now [m]: params from `first` on hold the target, a time, and the target from then on."""
+    return params[first] if t < params[first + 1] else params[first + 2]
+
+
+@njit(cache=True)
+def wanted_rate(t, measurement, params, first):
     """(known, r) of equation (50) [m/s]; params from `first` on."""
     j = int(params[first + LINE])
     if j >= measurement.line_length.shape[0] or not isfinite(measurement.line_length[j]):
         return False, 0.0
     length, n = measurement.line_length[j], params[first + MOTION]
-    rate = params[first + APPROACH] * (params[first + TARGET] - length)
+    rate = params[first + APPROACH] * (wanted_length(t, params, first + TARGET) - length)
     rate = min(max(rate, -params[first + IN] * length), params[first + OUT] * length)
     if params[first + IN_PLANE] > 0.0 or params[first + ACROSS] > 0.0:
         known, _, in_plane, across, across_rate = swing(measurement)
@@ -76,8 +83,13 @@ def wanted_rate(measurement, params, first):
     return True, min(max(rate, -params[first + FASTEST]), params[first + FASTEST])
 
 
-PARAMETERS = {
+TARGETS = {
     "target_length_m": Parameter("m", "L_t, unstretched length that is wanted in the end", kind="positive"),
+    "second_from_s": Parameter("s", "time from which another length is wanted; derived: never", kind="positive", derived=True),
+    "second_target_length_m": Parameter("m", "that length; derived: the first", kind="positive", derived=True),
+}
+PARAMETERS = {
+    **TARGETS,
     "rate_out_per_s": Parameter(
         "1/s", "c_out, derived: 0.75 n sin 40 deg, at which the line leans by 20 deg", kind="positive", derived=True
     ),
@@ -105,7 +117,16 @@ def packed_length(law: str, values: dict, context) -> np.ndarray:
     approach = MOST_OF_MOTION * n if values["approach_per_s"] is None else values["approach_per_s"]
     damping = [values["in_plane_damping"], values["out_of_plane_damping"]]
     line = reel_of(law, context)
-    return np.array([line, values["target_length_m"], approach, out, *pace, values["rate_max_m_s"], *damping, n])
+    return np.array([line, *packed_targets(law, values), approach, out, *pace, values["rate_max_m_s"], *damping, n])
+
+
+def packed_targets(law: str, values: dict) -> list[float]:
+    """First target, time of the second, second target; InputError for one of the latter without the other."""
+    when, second = values["second_from_s"], values["second_target_length_m"]
+    if (when is None) != (second is None):
+        raise InputError(f'the law "{law}" needs second_from_s and second_target_length_m together, or neither.')
+    first = values["target_length_m"]
+    return [first, NEVER, first] if when is None else [first, when, second]
 
 
 def reel_of(law: str, context, mode: str | None = None) -> int:

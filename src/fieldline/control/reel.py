@@ -25,10 +25,11 @@ from numba import njit
 
 from fieldline.control import line_length
 from fieldline.control.law import Law, Parameter, complete
-from fieldline.control.line_length import packed_length, reel_of, wanted_rate
+from fieldline.control.line_length import packed_length, packed_targets, reel_of, wanted_length, wanted_rate
 
 FAR_MASS, LINEAR_MASS, GAIN, LEAST, MOTION = range(line_length.SIZE, line_length.SIZE + 5)
-LINE, TARGET, SPEED, ACCELERATION, SETTLING = range(5)
+LINE, TARGET = range(2)
+SPEED, ACCELERATION, SETTLING = range(4, 7)  # after the two targets
 CALLED, ASKED, HAS_CALLED = range(3)
 
 
@@ -43,7 +44,7 @@ def _one(value):
 @njit(cache=True)
 def reel_exponential(t, measurement, memory, params):
     """Equation (52); no rate where the length is not known."""
-    _, rate = wanted_rate(measurement, params, 0)
+    _, rate = wanted_rate(t, measurement, params, 0)
     return _one(rate)
 
 
@@ -58,7 +59,7 @@ def reel_profile(t, measurement, memory, params):
         memory[ASKED] = rate if isfinite(rate) else 0.0
         memory[CALLED] = t
         memory[HAS_CALLED] = 1.0
-    left = params[TARGET] - measurement.line_length[j]
+    left = wanted_length(t, params, TARGET) - measurement.line_length[j]
     last = params[ACCELERATION] * params[SETTLING] ** 2
     size = sqrt(params[ACCELERATION] * (2.0 * abs(left) - last)) if abs(left) > last else abs(left) / params[SETTLING]
     wanted = min(params[SPEED], size) if left > 0.0 else -min(params[SPEED], size)
@@ -73,7 +74,7 @@ def reel_profile(t, measurement, memory, params):
 @njit(cache=True)
 def reel_tension(t, measurement, memory, params):
     """Equation (54); the tension of the last call where the length is not known."""
-    known, wanted = wanted_rate(measurement, params, 0)
+    known, wanted = wanted_rate(t, measurement, params, 0)
     j = int(params[line_length.LINE])
     if known and isfinite(measurement.line_rate[j]):
         length, n = measurement.line_length[j], params[MOTION]
@@ -84,7 +85,7 @@ def reel_tension(t, measurement, memory, params):
 
 
 PROFILE_PARAMETERS = {
-    "target_length_m": line_length.PARAMETERS["target_length_m"],
+    **line_length.TARGETS,
     "rate_m_s": Parameter("m/s", "u_max, rate between speeding up and slowing down", kind="positive"),
     "acceleration_m_s2": Parameter("m/s^2", "a, while it speeds up and slows down", 0.01, "positive"),
     "settling_s": Parameter("s", "t_s, time constant of the last metres", 10.0, "positive"),
@@ -108,8 +109,8 @@ def _pack_exponential(table, context) -> np.ndarray:
 def _pack_profile(table, context) -> np.ndarray:
     values = complete("reel-profile", PROFILE_PARAMETERS, table)
     line = reel_of("reel-profile", context, "rate")
-    keys = ("target_length_m", "rate_m_s", "acceleration_m_s2", "settling_s")
-    return np.array([line, *(values[key] for key in keys)], dtype=float)
+    keys = ("rate_m_s", "acceleration_m_s2", "settling_s")
+    return np.array([line, *packed_targets("reel-profile", values), *(values[key] for key in keys)], dtype=float)
 
 
 def _pack_tension(table, context) -> np.ndarray:

@@ -168,11 +168,20 @@ def test_the_profile_is_a_trapezoid_that_ends_at_its_target():
         ("reel-exponential", {}, (LineEnd((0, 0, 1), "tension"),), 'has mode = "tension"; give it mode = "rate"'),
         ("reel-tension", {"far_mass_kg": 1.0}, (LineEnd((0, 0, 1)), LineEnd((0, 0, 1), "rate")), 'give it mode = "tension"'),
         ("reel-profile", {"rate_m_s": 1.0}, (LineEnd((0, 0, 1), "rate"),) * 2, "the body has 2"),
+        ("reel-exponential", {"second_from_s": 5.0}, (), "needs second_from_s and second_target_length_m together"),
     ],
 )
 def test_what_a_reel_cannot_do_is_refused(name, table, lines, words):
     with pytest.raises(InputError, match=words):
         LAWS[name].pack({"target_length_m": 1e3} | table, replace(PLAIN, lines=lines))
+
+
+def test_a_second_target_from_its_time_on():
+    table = {"target_length_m": 2000.0, "rate_m_s": 4.0, "acceleration_m_s2": 0.05}
+    table |= {"second_from_s": 900.0, "second_target_length_m": 800.0}
+    times, states, _ = flown("reel-profile", table, (0.0, 0, 0, 0, 1000.0, 0.0), 1800.0, step=1.0)
+    assert states[times < 900.0, 4][-1] == pytest.approx(2000.0, abs=0.1)
+    assert states[-1, 4] == pytest.approx(800.0, abs=0.1)
 
 
 def test_the_line_of_the_reel_is_the_one_that_is_read():
