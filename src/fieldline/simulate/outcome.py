@@ -6,6 +6,7 @@ import numpy as np
 
 from fieldline.dynamics.layout import starts_in_state
 from fieldline.errors import InputError, raised
+from fieldline.simulate.assembly.lines import line_names
 from fieldline.simulate.loop.records import Outcome
 
 FINER_TURN_RAD = 0.2  # of a step, proposed where a step was too coarse
@@ -111,10 +112,21 @@ def _coarse(flight, t: float) -> str:
     )
 
 
+def _lowest(flight) -> str:
+    """What is nearest to the Earth: a body, or a node of a line."""
+    lines = flight.plant.lines
+    radii = {f'body "{body.name}"': np.linalg.norm(flight.y[13 * b : 13 * b + 3]) for b, body in enumerate(flight.scenario.body)}
+    start = starts_in_state(flight.plant)[0]
+    for k, name in enumerate(line_names(flight.scenario)):
+        rows = flight.y[start + 6 * lines.first[k] :][: 6 * lines.nodes[k]].reshape(-1, 6)
+        radii |= {f'node {j} of line "{name}"': np.linalg.norm(row[:3]) for j, row in enumerate(rows, start=1)}
+    return min(radii, key=lambda what: radii[what])
+
+
 def _ground(flight, t: float) -> str:
     return (
-        f"a body fell below {1e-3 * flight.stepping.floor:g} km at t = {t:.6g} s, where the models of air and orbit end. Raise "
-        'the orbit, or end the run there with an event: kind = "altitude", stop = true.'
+        f"{_lowest(flight)} fell below {1e-3 * flight.stepping.floor:g} km at t = {t:.6g} s, where the models of air and orbit "
+        'end. Raise the orbit, or end the run there with an event: kind = "altitude", stop = true.'
     )
 
 

@@ -15,6 +15,7 @@ from fieldline.simulate.scenario.checks import actuators_missing
 from fieldline.simulate.scenario.coarseness import orbit_too_coarse, rather_coarse
 
 MOST_STEPS = 1e10
+MOST_STRAIN = 0.2  # of a line at the start: beyond it two keys do not fit each other
 
 
 def check(scenario) -> list[str]:
@@ -25,6 +26,7 @@ def check(scenario) -> list[str]:
     found += _laws(scenario)
     if states is not None:
         found += _span(scenario, states)
+        found += _overstretched(scenario, states)
     if found:
         texts = [joined(path, text) for path, text in found]
         if len(texts) == 1:
@@ -78,12 +80,36 @@ def _span(scenario, states) -> Iterator[tuple[str, str]]:
         yield "integrator.step_s", f"gives {length / scenario.integrator.step_s:.2g} steps; the most is {MOST_STEPS:.0g}."
 
 
+def _strains(scenario, states) -> Iterator[tuple[int, float, float]]:
+    """(line, distance of its ends [m], strain) at the start, at least: attitudes may bring the ends nearer by the levers."""
+    for k, line in enumerate(scenario.line):
+        places = [states[scenario.index_of(name)][0] for name in (line.from_body, line.to_body)]
+        levers = float(np.linalg.norm(line.from_point_b_m) + np.linalg.norm(line.to_point_b_m))
+        distance = max(0.0, float(np.linalg.norm(places[1] - places[0])) - levers)
+        yield k, distance, distance / line.rest_length_m - 1.0
+
+
+def _overstretched(scenario, states) -> Iterator[tuple[str, str]]:
+    """A line is about as long as its ends are apart."""
+    for k, distance, strain in _strains(scenario, states):
+        if strain > MOST_STRAIN:
+            line = scenario.line[k]
+            yield (
+                f"line[{k}].rest_length_m",
+                f"must be about the distance of its ends: it is {line.rest_length_m:g} m, and they start {distance:g} m apart, "
+                f"which would stretch it by {100.0 * strain:.3g} %, to {strain * line.stiffness_n:.3g} N. Give [body.hang] to "
+                "one of its bodies, which puts it where the line is at rest, or mend offset_o_m.",
+            )
+
+
 def _functions(scenario) -> Iterator[tuple[str, str]]:
     """Functions of the user's own are where they are said to be."""
     named = [(f"software[{k}].law", one.law) for k, one in enumerate(scenario.software) if one.is_users]
     named += [(f"event[{k}].function", one.function) for k, one in enumerate(scenario.event) if one.function]
     for k, body in enumerate(scenario.body):
         named += [(f"body[{k}].load[{j}].function", one.function) for j, one in enumerate(body.load)]
+    for k, line in enumerate(scenario.line):
+        named += [(f"line[{k}].load[{j}].function", one.function) for j, one in enumerate(line.load)]
     for path, name in named:
         place, _, function = name.rpartition(":")
         if place.endswith(".py"):

@@ -40,7 +40,8 @@ def start_states(scenario) -> list[tuple[np.ndarray, np.ndarray]]:
 
             states.append(hung(scenario, body, states))
         elif body.offset_o_m is not None:
-            states.append(_beside(states[0], body))
+            tied = any(body.name in (line.from_body, line.to_body) for line in scenario.line)
+            states.append(_beside(states[0], body, tied))
         else:
             states.append(state_of(body.orbit, when, folder, eop))
     return states
@@ -110,13 +111,15 @@ def _sun_synchronous(orbit: SunSynchronous) -> starts.SunSynchronous:
     return starts.SunSynchronous(1e3 * orbit.altitude_km, SECONDS_PER_HOUR * orbit.local_time_h, place)
 
 
-def _beside(first: tuple[np.ndarray, np.ndarray], body) -> tuple[np.ndarray, np.ndarray]:
-    """Equation (1)."""
+def _beside(first: tuple[np.ndarray, np.ndarray], body, tied: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Equation (1); a body that is tied to a line need not be on an orbit by itself."""
     position, velocity = first
     dcm_io, rate_o = orbital_axes(position, velocity)
     offset = np.array(body.offset_o_m)
     place = position + dcm_io @ offset
     speed = velocity + dcm_io @ (np.array(body.offset_rate_o_m_s) + np.cross(rate_o, offset))
+    if tied:
+        return place, speed
     try:
         kepler.check_orbit(kepler.elements_from_state(place, speed))
     except InputError as error:
