@@ -23,7 +23,7 @@ from numba import njit
 
 from fieldline.estimation.skiprope.bandpass import bank_kernel
 
-PARAMETERS = ("frequency_hz", "damping", "corrected_rule", "azimuth_std_rad")
+PARAMETERS = ("frequency_hz", "damping", "corrected_rule", "along_body")
 PER_PERIOD, RING = 32, 64
 PHASES_PER_PERIOD, PHASES = 4, 32
 MEMORY_PERIODS = 10.0
@@ -240,7 +240,8 @@ def bandpass_phasor(t, memory, params, phasor, covariance):
     if told == 0 or not isfinite(tangential):
         tangential = pi * pi
     tangential *= mean * mean
-    phase = memory[PHASE] + sense * 2.0 * pi * memory[FREQUENCY] * (t - memory[MIDDLE])
+    off = memory[OFF] / memory[OFF_WEIGHT] if params[3] > 0.5 else 0.0  # yaw plus azimuth error, see `by_bandpass`
+    phase = memory[PHASE] - off + sense * 2.0 * pi * memory[FREQUENCY] * (t - memory[MIDDLE])
     c, s = cos(phase), sense * sin(phase)  # of exp(i sense phase), which turns forward
     along = (c, s, sense * s, -sense * c)  # z1 = exp(i sense phase), z2 = -i sense z1
     across = (-s, c, sense * c, sense * s)

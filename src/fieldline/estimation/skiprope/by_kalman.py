@@ -21,25 +21,20 @@ import numpy as np
 
 from fieldline.estimation.skiprope.kalman_step import (
     ALL_MISSED,
-    CONE,
-    CONE_W,
     COUNT,
     PARAMETERS,
     SIZE,
-    STATES,
+    kalman_rows,
     kalman_run,
-    predicted,
 )
 from fieldline.estimation.skiprope.signals import SkipropeSignals, field_vector
-from fieldline.estimation.skiprope.solution import circular
 from fieldline.estimation.skiprope.track import Track
 
 TURN = 2.0 * np.pi
 LOST = 4.0  # mean NIS over two periods
 SETTLED = 0.25  # deviation of the cone's phasors over the cone, from which it is trusted
-SURE_SENSE = 2.0
 SAMPLES_PER_PERIOD = 24
-YAW_MEMORY_S = 2000.0  # over which the azimuth's offset is averaged
+MANY = 0.05  # of the samples, passed over: worth a note
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,66 +74,20 @@ def kalman_track(signals: SkipropeSignals, rows, settings, usual: KalmanSettings
     thin = signals.thinned(1.0 / (SAMPLES_PER_PERIOD * fastest))
     swing = settings.pendulous_hz[0] if settings.pendulous_hz else None
     params = usual.packed(settings.frequency_hz, swing)
-    memory = np.zeros(SIZE)
-    states, spreads = np.empty((len(rows), STATES)), np.empty((len(rows), STATES, STATES))
-    nis = np.empty(len(rows))
-    known = field_vector(thin.geometry)
-    kalman_run(thin.seconds, thin.field_b, known, memory, params, rows, states, spreads, nis)
-    at_rows = np.stack([np.interp(rows, thin.seconds, column) for column in known.T], axis=1)
-    return track_of(states, spreads, nis, rows, memory, at_rows)
-
-
-def azimuth_off(states, known, rows) -> np.ndarray:
-    """(m,) azimuth of the known field (m, 3) less that of the field as the slow angles turn it, averaged over the past.
-
-    A turn about the field, which nothing shows at an instant, drops out of it; the third slow angle alone would not do.
-    """
-    slow = np.zeros_like(states)
-    slow[:, :3] = states[:, :3]
-    turned = np.array([predicted(x, b) for x, b in zip(slow, known, strict=True)])[:, 0]
-    off = np.arctan2(-known[:, 0], known[:, 1]) - np.arctan2(-turned[:, 0], turned[:, 1])
-    off = (off + np.pi) % TURN - np.pi
-    mean, weight, before = 0.0, 0.0, rows[0]
-    answer = np.empty(len(rows))
-    for k, (t, value) in enumerate(zip(rows, off, strict=True)):
-        kept = np.exp(-(t - before) / YAW_MEMORY_S)
-        if np.isfinite(value):
-            mean, weight = kept * mean + value, kept * weight + 1.0
-        answer[k], before = mean / max(weight, 1.0), t
-    return answer
-
-
-def track_of(states, spreads, nis, rows, memory, known) -> Track:
-    """A track from states (m, 16) and their covariances, with the known field (m, 3) at the same times."""
-    grown = np.maximum(nis, 1.0)[:, None, None] * spreads
-    cone = states[:, CONE : CONE + 4]
-    phasor = np.stack([cone[:, 0] + 1j * cone[:, 1], cone[:, 2] + 1j * cone[:, 3]], axis=1)
-    covariance = grown[:, CONE : CONE + 4, CONE : CONE + 4]
-    backward = states[:, CONE_W] < 0.0  # the same motion, written with a negative frequency
-    phasor = np.where(backward[:, None], phasor.conj(), phasor)
-    parts = np.abs(circular(phasor))
-    spread = np.sqrt(np.trace(covariance, axis1=1, axis2=2) / 4.0)
-    sense = np.where(np.abs(parts[:, 0] - parts[:, 1]) > SURE_SENSE * spread, np.sign(parts[:, 0] - parts[:, 1]), 0.0)
-    good = (spread < SETTLED * parts.max(axis=1)) & (nis < LOST)
-    late = np.flatnonzero(~good)
-    settled = rows[min(late[-1] + 1, len(rows) - 1)] if len(late) else rows[0]
-    settled = settled if good[-1] else np.inf
+    memory, memories = np.zeros(SIZE), np.zeros((len(rows), SIZE))
+    kalman_run(thin.seconds, thin.field_b, field_vector(thin.geometry), memory, params, rows, memories)
+    parts, covariance, numbers = np.empty((len(rows), 4)), np.empty((len(rows), 4, 4)), np.empty((len(rows), 6))
+    kalman_rows(memories, SETTLED, LOST, parts, covariance, numbers)
+    sense, good, frequency, deviation, off, nis = numbers.T
+    late = np.flatnonzero(good == 0.0)
+    settled = rows[late[-1] + 1] if len(late) and late[-1] + 1 < len(rows) else rows[0] if not len(late) else np.inf
     notes = []
     if not good[-1]:
         notes.append(
             f"the Kalman filter does not follow at the end of the record (mean square innovation {nis[-1]:.3g}, 1 is "
             "consistent): none of its rows is trusted; use the harmonic method, or another first frequency."
         )
-    if memory[ALL_MISSED] > 0.05 * memory[COUNT]:
+    if memory[ALL_MISSED] > MANY * memory[COUNT]:
         notes.append(f"{memory[ALL_MISSED]:.0f} samples were passed over as too far off.")
-    return Track(
-        phasor,
-        covariance,
-        np.abs(states[:, CONE_W]) / TURN,
-        np.sqrt(grown[:, CONE_W, CONE_W]) / TURN,
-        sense.astype(int),
-        azimuth_off(states, known, rows),
-        True,
-        float(settled),
-        tuple(notes),
-    )
+    phasor = np.stack([parts[:, 0] + 1j * parts[:, 1], parts[:, 2] + 1j * parts[:, 3]], axis=1)
+    return Track(phasor, covariance, frequency, deviation, sense.astype(int), off, True, float(settled), tuple(notes))

@@ -23,20 +23,18 @@ it symmetric by construction (one triangle is computed and copied).
 
 from __future__ import annotations
 
-from math import cos, isfinite, sin
+from math import atan2, cos, exp, isfinite, pi, sin, sqrt
 
-import numpy as np
 from numba import njit
 
 from fieldline.estimation.skiprope.bandpass import exact_step
 from fieldline.frames.vectors import cross, dot, norm, scale, sub, unit
 
 STATES = 16
-HEAD = (
-    8  # of the memory: started, last time, first time, mean NIS, samples, passed over since the last used, NIS, all passed over
-)
+HEAD = 10  # of the memory, see below
 SIZE = HEAD + STATES + STATES * STATES + STATES  # head, state, covariance, room to work
-STARTED, LAST, FIRST, MEAN_NIS, COUNT, MISSED, NIS, ALL_MISSED = range(HEAD)
+# started; last and first time [s]; mean NIS; samples used; passed over since, of the last, of all; sums of the azimuth's offset
+STARTED, LAST, FIRST, MEAN_NIS, COUNT, MISSED, NIS, ALL_MISSED, OFF, OFF_WEIGHT = range(HEAD)
 SLOW, RATE, CONE, CONE_W, SWING, SWING_W = 0, 3, 6, 10, 11, 15
 PARAMETERS = (
     "noise_tesla",
@@ -58,8 +56,10 @@ PARAMETERS = (
     "slow_rate_rad_s",  # v of (2)
 )
 SLOW_DAMPING = 0.7
+SURE_SENSE = 2.0  # deviations by which the turning parts must differ
 GATE = 36.0  # of the squared normalised innovation
 MOST_MISSED = 20  # passed over in turn: the next is used
+OFF_MEMORY_S = 2000.0  # over which the azimuth's offset is averaged
 
 
 @njit(cache=True)
@@ -169,6 +169,8 @@ def kalman_update(t, field_b, field_c, memory, params):
     elif not t > memory[LAST]:
         return False
     else:
+        kept = exp(-(t - memory[LAST]) / OFF_MEMORY_S)
+        memory[OFF], memory[OFF_WEIGHT] = kept * memory[OFF], kept * memory[OFF_WEIGHT]
         kalman_carry(t, memory, params)
     x = memory[HEAD : HEAD + STATES]
     p = covariance_of(memory)
@@ -181,6 +183,8 @@ def kalman_update(t, field_b, field_c, memory, params):
     r1, r2 = dot(first, off), dot(second, off)
     s11, s12, s22 = _inside(p, h1, h1) + variance, _inside(p, h1, h2), _inside(p, h2, h2) + variance
     nis = (s22 * r1 * r1 - 2.0 * s12 * r1 * r2 + s11 * r2 * r2) / (s11 * s22 - s12 * s12)
+    weight = max(1.0 / (memory[COUNT] + memory[ALL_MISSED] + 1.0), _share(t, memory, x))
+    memory[MEAN_NIS] += (0.5 * min(nis, GATE) - memory[MEAN_NIS]) * min(weight, 1.0)
     if nis > GATE and memory[MISSED] < MOST_MISSED and memory[COUNT] > 0.0:
         memory[MISSED] += 1.0
         memory[ALL_MISSED] += 1.0
@@ -188,9 +192,10 @@ def kalman_update(t, field_b, field_c, memory, params):
     work = memory[SIZE - STATES :]
     moved = _take(x, p, work, h1, h2, r1, variance)
     _take(x, p, work, h2, h1, r2 - moved, variance)
+    memory[OFF] += _azimuth_ahead(x, known)
+    memory[OFF_WEIGHT] += 1.0
     memory[MISSED], memory[NIS] = 0.0, nis
     memory[COUNT] += 1.0
-    memory[MEAN_NIS] += (0.5 * nis - memory[MEAN_NIS]) * max(1.0 / memory[COUNT], _share(t, memory, x))
     return True
 
 
@@ -239,28 +244,87 @@ def _take(x, p, work, h, other, residual, variance):
 @njit(cache=True)
 def _share(t, memory, x):
     """Weight of the newest sample in the mean of two periods, from how often samples have come."""
-    interval = (t - memory[FIRST]) / max(memory[COUNT] - 1.0, 1.0)
-    return interval * abs(x[CONE_W]) / (4.0 * np.pi)
+    interval = (t - memory[FIRST]) / max(memory[COUNT] + memory[ALL_MISSED], 1.0)
+    return interval * abs(x[CONE_W]) / (4.0 * pi)
 
 
 @njit(cache=True)
-def kalman_run(seconds, field_b, field_c, memory, params, rows, states, covariances, mean_nis):
-    """Take in n samples; at times `rows` (m,), rising, store state (m, 16), covariance (m, 16, 16), and mean NIS (m,).
+def _azimuth_ahead(x, known):
+    """Azimuth [rad] of the known field less that of the field as the slow angles turn it.
 
-    A row is the state carried on from the last sample before or at its time; NaN before the first.
+    A turn about the field, which nothing shows at an instant, drops out of it; s3 alone would not do.
+    """
+    c1, s1, c2, s2, c3, s3 = cos(x[0]), sin(x[0]), cos(x[1]), sin(x[1]), cos(x[2]), sin(x[2])
+    u, v, w = c3 * known[0] + s3 * known[1], c3 * known[1] - s3 * known[0], known[2]
+    u, w = c2 * u - s2 * w, s2 * u + c2 * w
+    v = c1 * v + s1 * w
+    return atan2(u * known[1] - v * known[0], u * known[0] + v * known[1])
+
+
+@njit(cache=True)
+def azimuth_off(memory):
+    """[rad] yaw plus azimuth error of the known field, averaged over the past."""
+    return memory[OFF] / max(memory[OFF_WEIGHT], 1.0)
+
+
+@njit(cache=True)
+def kalman_frequency(memory):
+    """The cone's frequency [Hz], positive, and its deviation, grown as `kalman_phasor`'s."""
+    w = memory[HEAD + CONE_W]
+    return abs(w) / (2.0 * pi), sqrt(covariance_of(memory)[CONE_W, CONE_W] * max(memory[MEAN_NIS], 1.0)) / (2.0 * pi)
+
+
+@njit(cache=True)
+def kalman_phasor(memory, phasor, covariance, settled, lost):
+    """Fill Re z1, Im z1, Re z2, Im z2 (4,) for a positive frequency, and their covariance (4, 4); (sense, trusted).
+
+    The covariance grows by the mean NIS where it is above one. Trusted: phasors' deviation below `settled` of the cone, and a
+    mean NIS below `lost`. The sense is 0 where the two turning parts differ by less than two deviations.
+    """
+    x = memory[HEAD : HEAD + STATES]
+    p = covariance_of(memory)
+    grown = max(memory[MEAN_NIS], 1.0)
+    back = -1.0 if x[CONE_W] < 0.0 else 1.0
+    total = 0.0
+    for i in range(4):
+        phasor[i] = x[CONE + i] * (back if i % 2 else 1.0)
+        for j in range(4):
+            covariance[i, j] = grown * p[CONE + i, CONE + j] * (back if (i + j) % 2 else 1.0)
+        total += covariance[i, i]
+    plus = 0.5 * sqrt((phasor[0] - phasor[3]) ** 2 + (phasor[1] + phasor[2]) ** 2)
+    minus = 0.5 * sqrt((phasor[0] + phasor[3]) ** 2 + (phasor[1] - phasor[2]) ** 2)
+    spread = sqrt(total / 4.0)
+    sense = 0
+    if abs(plus - minus) > SURE_SENSE * spread:
+        sense = 1 if plus > minus else -1
+    return sense, spread < settled * max(plus, minus) and memory[MEAN_NIS] < lost
+
+
+@njit(cache=True)
+def kalman_run(seconds, field_b, field_c, memory, params, rows, memories):
+    """Take in n samples; at times `rows` (m,), rising, store the memory carried on to there, in memories (m, SIZE).
+
+    A row before the first sample is all zero.
     """
     k = 0
     for j in range(len(seconds) + 1):
         while k < len(rows) and (j == len(seconds) or rows[k] < seconds[j]):
-            if memory[STARTED] == 0.0:
-                states[k], covariances[k], mean_nis[k] = np.nan, np.nan, np.nan
-            else:
-                kept = memory.copy()
-                if rows[k] > kept[LAST]:
-                    kalman_carry(rows[k], kept, params)
-                states[k] = kept[HEAD : HEAD + STATES]
-                covariances[k] = covariance_of(kept)
-                mean_nis[k] = kept[MEAN_NIS]
+            memories[k] = memory
+            if memory[STARTED] > 0.0 and rows[k] > memory[LAST]:
+                kalman_carry(rows[k], memories[k], params)
             k += 1
         if j < len(seconds):
             kalman_update(seconds[j], field_b[j], field_c[j], memory, params)
+
+
+@njit(cache=True)
+def kalman_rows(memories, settled, lost, phasors, covariances, numbers):
+    """Of memories (m, SIZE): phasors (m, 4), covariances (m, 4, 4), and numbers (m, 6).
+
+    The numbers: sense, trusted, frequency [Hz], its deviation, azimuth offset [rad], mean NIS.
+    """
+    for k in range(len(memories)):
+        sense, good = kalman_phasor(memories[k], phasors[k], covariances[k], settled, lost)
+        hz, std = kalman_frequency(memories[k])
+        numbers[k, 0], numbers[k, 1], numbers[k, 2], numbers[k, 3] = sense, 1.0 if good else 0.0, hz, std
+        numbers[k, 4], numbers[k, 5] = azimuth_off(memories[k]), memories[k][MEAN_NIS]

@@ -61,8 +61,8 @@ def cone_numbers(phasor, covariance, sense, yaw, yaw_std, length, out):
     out[4] = abs(size_plus - size_minus)
     out[5] = _spread(covariance, _sum(by_plus, by_minus, -1.0))
     out[6] = angle_plus if forward else -angle_minus
-    out[7] = _spread(covariance, across) / max(amplitude, 1e-300)
-    radius = max(hypot(re1, re2), 1e-300)
+    out[7] = _spread(covariance, across) / max(amplitude, 1e-150)
+    radius = max(hypot(re1, re2), 1e-150)
     out[8] = (atan2(re2, re1) + yaw + pi) % (2.0 * pi) - pi
     out[9] = hypot(_spread(covariance, (-re2 / radius**2, 0.0, re1 / radius**2, 0.0)), yaw_std)
     scale = length / pi

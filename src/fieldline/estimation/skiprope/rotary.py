@@ -11,9 +11,9 @@ other. Against the spectrum near by,
 
     q(f) = Q(f) / Q_near * median of chi-squared of 4 K,    Q = sum over pieces of v* S^-1 v                        (2)
 
-follows chi-squared of 4 K where there is nothing but noise that is smooth in frequency (Q_near is the median of Q from half to
-twice f, the line's own width left out). The highest of N independent cells, 1.5 over a piece's length apart, passes the
-threshold x with
+follows chi-squared of 4 K where there is nothing but noise that is smooth in frequency (Q_near is the greater of the
+medians of Q over five of the line's widths below f and above). The highest of N independent cells, one over a piece's length
+apart, passes the threshold x with
 
     P = 1 - F(x)^N,     F the distribution of chi-squared of 4 K                                                    (3)
 
@@ -46,7 +46,9 @@ LEAST_TURNING = 0.2  # of a line that turns
 LEAST_SHARE = 0.1  # of the strongest turning line's amplitude: a weaker one is not taken for the cone
 LEAST_RAD = np.radians(0.06)  # of a line with fewer than six periods in the record: field errors reach half of that
 FEW_PERIODS = 6.0
-CELL = 1.5  # over a piece's length: between independent values
+SIDE = 6  # widths on either side of a line that the noise is taken from
+FROM_FEW = 1.2  # times (3)'s threshold: the noise is known from some tens of values
+CELL = 1.0  # over a piece's length: between independent values
 
 
 class Line(NamedTuple):
@@ -163,8 +165,9 @@ def _piece(known, measured, place, width: float, bins: int, size: int) -> tuple[
     degree = max(round(2.0 * SLOW_HZ * bins * width), LEAST_DEGREE)
     shapes = legvander(2.0 * (place + 0.5) / bins - 1.0, degree)
     slow = (motion[:, :, None, :] * shapes[:, None, :, None]).reshape(len(place), 3, -1)
-    root = np.sqrt(taper)[:, None]
-    fitted = np.linalg.lstsq((slow * root[:, :, None]).reshape(-1, slow.shape[-1]), (off * root).reshape(-1), rcond=1e-8)[0]
+    weighed = (slow * taper[:, None, None]).reshape(-1, slow.shape[-1])
+    normal = np.linalg.pinv(weighed.T @ slow.reshape(-1, slow.shape[-1]), rcond=1e-12, hermitian=True)
+    fitted = normal @ (weighed.T @ off.reshape(-1))
     across = np.einsum("nij,ni->nj", motion[:, :, :2], taper[:, None] * (off - slow @ fitted))
     inverse = np.linalg.inv(np.einsum("n,nij,nik->jk", taper, motion[:, :, :2], motion[:, :, :2]))
     v = np.stack([np.fft.rfft(np.bincount(place, column, minlength=bins), size) for column in across.T], axis=1)
@@ -172,11 +175,11 @@ def _piece(known, measured, place, width: float, bins: int, size: int) -> tuple[
 
 
 def chi2_levels(freedom: int, false_alarm: float, cells: float) -> tuple[float, float]:
-    """The median of chi-squared, and the threshold x of (3)."""
+    """The median of chi-squared, and the threshold x of (3) with its allowance."""
     from scipy.special import gammainccinv, gammaincinv
 
     tail = -np.expm1(np.log1p(-false_alarm) / cells)
-    return 2.0 * float(gammaincinv(0.5 * freedom, 0.5)), 2.0 * float(gammainccinv(0.5 * freedom, tail))
+    return 2.0 * float(gammaincinv(0.5 * freedom, 0.5)), FROM_FEW * 2.0 * float(gammainccinv(0.5 * freedom, tail))
 
 
 def _crossed(axis: int, known) -> np.ndarray:
@@ -185,16 +188,18 @@ def _crossed(axis: int, known) -> np.ndarray:
 
 
 def _near(power, frequency, width: float) -> np.ndarray:
-    """(k,) median of the power from half to twice each frequency, and at least six widths about it, without its own."""
-    near = np.empty_like(power)
-    step = frequency[1] - frequency[0]
-    own = int(np.ceil(width / step))
-    for k in range(len(power)):
-        reach = max(k // 2, 4 * own)
-        first, last = max(k - reach, own), k + 2 * reach + 1
-        around = np.concatenate([power[first : max(k - own, first)], power[k + own + 1 : last]])
-        near[k] = np.median(around) if len(around) else np.inf
-    return np.maximum(near, 1e-300)
+    """(k,) the greater of the medians of the power on either side of each frequency, its own width left out."""
+    own = int(np.ceil(width / (frequency[1] - frequency[0])))
+    reach = (SIDE - 1) * own
+    near = np.full(len(power), -np.inf)
+    if len(power) >= reach + own:
+        medians = np.median(np.lib.stride_tricks.sliding_window_view(power[own:], reach), axis=1)
+        near[: max(len(medians) - 1, 0)] = medians[1:]  # above k: from k + own + 1
+        below = medians[: max(len(power) - 2 * own - reach, 0)]  # below k: up to k - own
+        near[2 * own + reach : 2 * own + reach + len(below)] = np.maximum(near[2 * own + reach :], below)
+    for k in range(2 * own + 1 + own, min(2 * own + reach, len(power))):  # near zero, with fewer below
+        near[k] = max(near[k], np.median(power[own : k - own]))
+    return np.maximum(np.where(np.isfinite(near), near, np.inf), 1e-300)
 
 
 def _lines(found: Rotary, strength, threshold: float, width: float, lowest_hz: float) -> tuple[Line, ...]:
