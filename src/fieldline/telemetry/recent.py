@@ -15,6 +15,7 @@ from fieldline.telemetry.stream import Rows, joined_rows, no_rows
 
 FIRST_ROWS = 16  # which say how fast rows come
 SETBACK_ROWS = 30
+NEVER = int(np.iinfo(np.int64).min)
 SAME_FIELD_TESLA = 1e-6  # a row sent again is as near to what is known of its time
 GAP_S = 60.0  # a longer silence is told
 COUNTS = ("rows", "repeated", "behind", "without_field", "gaps", "restarts")
@@ -53,19 +54,22 @@ class Recent:
             return []
         self.counts["rows"] += len(rows.time_utc)
         self.counts["without_field"] += int((~np.isfinite(rows.field_s).all(axis=1)).sum())
-        ns = rows.time_utc.astype(np.int64)
-        known = np.iinfo(np.int64).min if self.last_ns is None else self.last_ns
-        before = np.maximum.accumulate(np.concatenate(([known], ns)))[:-1]
-        fresh = ns > before
-        told = [] if fresh.all() else self._odd(rows.where(~fresh), before[~fresh])
-        if self.last_ns is None or fresh.any():
-            told += self._append(rows.where(fresh))
+        told = []
+        while len(rows.time_utc):
+            ns = rows.time_utc.astype(np.int64)
+            known = NEVER if self.last_ns is None else self.last_ns
+            before = np.maximum.accumulate(np.concatenate(([known], ns)))[:-1]
+            newer = ns > before
+            change = np.flatnonzero(newer != newer[0])
+            count = int(change[0]) if len(change) else len(ns)  # rows of one kind, in their order
+            told += self._append(rows.where(slice(0, count))) if newer[0] else self._odd(rows.where(slice(0, count)), known)
+            rows = rows.where(slice(count, None))
         return told
 
-    def _odd(self, rows: Rows, before: np.ndarray) -> list[str]:
-        """Rows that are not newer than those before them."""
+    def _odd(self, rows: Rows, newest: int) -> list[str]:
+        """Rows that are not newer than the newest."""
         ns = rows.time_utc.astype(np.int64)
-        repeated = ns == before
+        repeated = ns == newest
         self.counts["repeated"] += int(repeated.sum())
         self.counts["behind"] += int((~repeated).sum())
         if self.resumed:  # a stream that begins anew after a restart sends what is known
@@ -88,12 +92,13 @@ class Recent:
         if self._is_known(late):
             return [f"{len(late.time_utc)} rows from {_iso(late.time_utc[0].astype(np.int64))} on were sent again; passed over."]
         ns = late.time_utc.astype(np.int64)
-        rising = ns > np.maximum.accumulate(np.concatenate(([np.iinfo(np.int64).min], ns)))[:-1]
+        rising = ns > np.maximum.accumulate(np.concatenate(([NEVER], ns)))[:-1]
         words = (
             f"the clock went back from {_iso(self.last_ns)} to {_iso(ns[0])} and goes on from there: what came before is "
             "forgotten, and the estimate begins anew."
         )
         self.counts["restarts"] += 1
+        self.counts["behind"] -= int(rising.sum())
         self._forget()
         self._append(late.where(rising))
         return [words]

@@ -122,7 +122,9 @@ class RowReader:
                 if [cell.strip() for cell in cells] != layout.names:  # a header sent again is none to complain of
                     self.unreadable += 1
                     self.first_bad = self.first_bad or shown(text)
-        return self._assembled(np.array(times, dtype="datetime64[ns]"), np.array(numbers, dtype=float).reshape(len(times), -1))
+        return self._assembled(
+            np.array(times, dtype="datetime64[ns]"), np.array(numbers, dtype=float).reshape(len(times), len(self.index) - clocks)
+        )
 
     def _assembled(self, time_utc: np.ndarray, numbers: np.ndarray) -> Rows:
         """The columns that matter, in SI."""

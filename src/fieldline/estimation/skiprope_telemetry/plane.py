@@ -87,7 +87,8 @@ def next_crossings(estimate: SkipropeEstimate, signals: SkipropeSignals, plane: 
         at = estimate.seconds
         for _ in range(PASSES if plane.azimuth_deg is None else 1):
             azimuth[:, k] = plane.azimuth_rad(at, signals)
-            found = estimate.crossings(azimuth[:, k], COUNT + 1, row=everything)
+            with np.errstate(divide="ignore", invalid="ignore"):  # a row without any deflection crosses nothing
+                found = estimate.crossings(azimuth[:, k], COUNT + 1, row=everything)
             at = _later(found.seconds, at, k, estimate)
         pick = np.abs(found.seconds - at[:, None]).argmin(axis=1)
         index = np.arange(rows)
