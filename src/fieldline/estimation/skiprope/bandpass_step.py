@@ -10,7 +10,8 @@ rule) or when the filter heard it (d = 1 / (z wn)), and the frequency f from the
 eight periods. The filter is tuned anew, its state going on, when its phase at f exceeds three degrees, at most once in the
 time that it takes to settle.
 
-Deviations are of a single cycle: scatter over ten periods, and the ellipse as in `reading`.
+Deviations are of a single cycle: scatter over eight periods, the ellipse as in `reading`, and with the paper's rule by how much
+the azimuth has turned while the filter heard it.
 
 `memory` and `params` are flat float arrays, so that a law may own them (`SIZE`, `PARAMETERS`; zeros at the start).
 """
@@ -33,8 +34,10 @@ SETTLED = 2.53  # minus the logarithm of the 8 % that TP-3123 lets stay
 
 STARTED, LAST, FILTER_HZ, NEXT, KEPT, NEXT_PHASE, PHASES_KEPT, RETUNED = range(8)
 PRODUCT_RE, PRODUCT_IM, PRODUCT_SIZE, WHOLE, ROUND = range(8, 13)
-MIDDLE, AMPLITUDE, PHASE, TETHER, FREQUENCY, FREQUENCY_STD, SCATTER, MEAN, MEAN_SQUARE, WEIGHT, OFF, OFF_WEIGHT = range(13, 25)
-HEAD = 25
+MIDDLE, AMPLITUDE, PHASE, TETHER, FREQUENCY, FREQUENCY_STD, SCATTER, MEAN, MEAN_SQUARE, WEIGHT, OFF, OFF_WEIGHT, LATE = range(
+    13, 26
+)
+HEAD = 26
 CLOCK, COLUMNS = HEAD, HEAD + 3
 ROWS = COLUMNS + 9  # ring of (t, y1, y2, y3, azimuth without jumps)
 MARKS = ROWS + 5 * RING  # ring of (t, phase of (1) without jumps)
@@ -129,9 +132,11 @@ def _read(t, memory, params):
     memory[WHOLE] = kept * memory[WHOLE] + abs(z1) ** 2 + abs(z2) ** 2
     memory[ROUND] = kept * memory[ROUND] + 2.0 * product.imag
     sense = -1.0 if memory[PRODUCT_IM] < 0.0 else 1.0
-    delay = 1.0 / (damping * 2.0 * pi * hz) if params[2] > 0.5 else 0.0
+    delay = 1.0 / (damping * 2.0 * pi * hz)
+    now, then = _azimuth_at(rows, newest, middle), _azimuth_at(rows, newest, middle - delay)
+    memory[LATE] = 0.0 if params[2] > 0.5 else now - then
     memory[MIDDLE], memory[AMPLITUDE] = middle, abs(z3)
-    memory[PHASE] = _azimuth_at(rows, newest, middle - delay) + pi + sense * atan2(z3.imag, z3.real)  # (1)
+    memory[PHASE] = now - (now - then if params[2] > 0.5 else 0.0) + pi + sense * atan2(z3.imag, z3.real)  # (1)
     size = abs(z3)
     memory[MEAN] = kept * memory[MEAN] + size
     memory[MEAN_SQUARE] = kept * memory[MEAN_SQUARE] + size * size
@@ -237,6 +242,7 @@ def bandpass_phasor(t, memory, params, phasor, covariance):
     scatter = max(memory[MEAN_SQUARE] / memory[WEIGHT] - mean * mean, 0.0)
     radial = scatter + 0.5 * ellipse * ellipse * mean * mean
     tangential = memory[SCATTER] + 0.5 * asin(ellipse) ** 2 + (2.0 * pi * memory[FREQUENCY_STD] * (t - memory[MIDDLE])) ** 2
+    tangential += memory[LATE] ** 2
     if told == 0 or not isfinite(tangential):
         tangential = pi * pi
     tangential *= mean * mean

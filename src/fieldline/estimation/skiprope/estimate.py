@@ -42,6 +42,7 @@ MEASURED_YAW_STD_RAD = np.radians(0.5)
 NEAR = 0.3  # of a given frequency, in which its line is looked for
 WORST_FIELD_RAD = np.radians(40.0)
 ROWS_PER_PERIOD = 20
+BINS = 100  # in a period of the band's upper end: fine enough for motions five times as fast
 SURE = 0.5  # largest standard deviation of a trusted amplitude, of the amplitude
 
 
@@ -102,15 +103,16 @@ def estimate_skiprope(
     measured = yaw_rad is not None
     yaw = _yaw(yaw_rad, signals)
     turned = signals.turned(yaw) if measured else signals
-    off_rad = _disagreement(turned)
-    found = detect(turned, band_hz=_band(frequency_hz, band_hz), false_alarm=false_alarm)
+    coarse = turned.thinned(1.0 / (BINS * max(band_hz[1], frequency_hz or 0.0)))
+    off_rad = _disagreement(coarse)
+    found = detect(coarse, band_hz=_band(frequency_hz, band_hz), false_alarm=false_alarm)
     line = found.cone if frequency_hz is None else _line_near(found, positive("frequency_hz", frequency_hz))
     found = found._replace(cone=line, others=tuple(other for other in found.lines if other is not line))
     if line is None:
         return _nothing(method, length, found, signals)
     settings = Settings(line.frequency_hz, _pendulous(found, line), damping, memory_s, rule, knowledge, measured)
     rows = _rows(signals, line.frequency_hz, step_s)
-    track = TRACKS[method](turned, rows, settings)
+    track = TRACKS[method](turned if method == "bandpass" else coarse, rows, settings)
     deviation = (MEASURED_YAW_STD_RAD if measured else YAW_STD_RAD) if yaw_std_rad is None else float(yaw_std_rad)
     if measured:
         turn = np.interp(rows, signals.seconds, yaw)

@@ -41,6 +41,7 @@ FINENESS = 4  # frequencies per 1 / length
 HALF_WIDTH = 2.5  # of a line, over a piece's length
 PIECE_S = 6000.0
 SLOW_HZ = 0.001
+SLOW_BINS = 50  # over 1 / SLOW_HZ: enough to fit what is slow
 LEAST_DEGREE = 3
 LEAST_TURNING = 0.2  # of a line that turns
 LEAST_SHARE = 0.1  # of the strongest turning line's amplitude: a weaker one is not taken for the cone
@@ -160,16 +161,14 @@ def _piece(known, measured, place, width: float, bins: int, size: int) -> tuple[
     from numpy.polynomial.legendre import legvander
 
     taper = 0.5 - 0.5 * np.cos(2.0 * np.pi * (place + 0.5) / bins)
-    motion = np.stack([_crossed(axis, known) for axis in (0, 1, 2)], axis=-1)
     off = measured - known
     degree = max(round(2.0 * SLOW_HZ * bins * width), LEAST_DEGREE)
     shapes = legvander(2.0 * (place + 0.5) / bins - 1.0, degree)
-    slow = (motion[:, :, None, :] * shapes[:, None, :, None]).reshape(len(place), 3, -1)
-    weighed = (slow * taper[:, None, None]).reshape(-1, slow.shape[-1])
-    normal = np.linalg.pinv(weighed.T @ slow.reshape(-1, slow.shape[-1]), rcond=1e-12, hermitian=True)
-    fitted = normal @ (weighed.T @ off.reshape(-1))
-    across = np.einsum("nij,ni->nj", motion[:, :, :2], taper[:, None] * (off - slow @ fitted))
-    inverse = np.linalg.inv(np.einsum("n,nij,nik->jk", taper, motion[:, :, :2], motion[:, :, :2]))
+    group = max(int(1.0 / (SLOW_BINS * SLOW_HZ * width)), 1)
+    turning = shapes @ _slow(known, off, taper, shapes, group)
+    motion = np.stack([np.cross(known, np.eye(3)[axis]) for axis in (0, 1)], axis=-1)  # what a turn makes of B: -e x B
+    across = np.einsum("nij,ni->nj", motion, taper[:, None] * (off - np.cross(known, turning)))
+    inverse = np.linalg.inv(np.einsum("n,nij,nik->jk", taper, motion, motion))
     v = np.stack([np.fft.rfft(np.bincount(place, column, minlength=bins), size) for column in across.T], axis=1)
     return v, inverse
 
@@ -182,9 +181,16 @@ def chi2_levels(freedom: int, false_alarm: float, cells: float) -> tuple[float, 
     return 2.0 * float(gammaincinv(0.5 * freedom, 0.5)), FROM_FEW * 2.0 * float(gammainccinv(0.5 * freedom, tail))
 
 
-def _crossed(axis: int, known) -> np.ndarray:
-    """(n, 3): what a turn by one radian about an axis makes of the directions, -e x B."""
-    return np.cross(known, np.eye(3)[axis])
+def _slow(known, off, taper, shapes, group: int) -> np.ndarray:
+    """(k, 3) weights of the shapes (n, k) in a rotation that fits what the known directions are off, over groups of bins."""
+    edges = np.arange(0, len(known), group)
+    known, off, shapes = (np.add.reduceat(x * taper[:, None], edges) for x in (known, off, shapes))
+    weight = np.add.reduceat(taper, edges)[:, None]
+    motion = np.stack([np.cross(known / weight, axis) for axis in np.eye(3)], axis=-1)
+    matrix = (motion[:, :, None, :] * (shapes / weight)[:, None, :, None]).reshape(3 * len(edges), -1)
+    weighed = matrix * np.repeat(weight, 3, axis=0)
+    normal = np.linalg.pinv(weighed.T @ matrix, rcond=1e-12, hermitian=True)
+    return (normal @ (matrix.T @ off.reshape(-1))).reshape(-1, 3)
 
 
 def _near(power, frequency, width: float) -> np.ndarray:
