@@ -24,6 +24,7 @@ from fieldline.environment.atmosphere import Atmosphere
 from fieldline.environment.ephemeris import Ephemeris
 from fieldline.environment.field_record import FieldParams
 from fieldline.environment.gravity import Gravity
+from fieldline.environment.plasma import Plasma
 
 STATE, TANGENT = 13, 12  # numbers of a body in (1) and (2)
 PLAIN_LOAD = 100  # user loads from this number on are written in plain Python
@@ -36,6 +37,7 @@ class Surroundings(NamedTuple):
     field: FieldParams
     uniform_field_i: np.ndarray  # (3,) [T], added to the model's
     atmosphere: Atmosphere
+    plasma: Plasma
     ephemeris: Ephemeris
     rotating: bool  # the Earth's attitude is needed: field, oblate gravity or air
 
@@ -121,6 +123,9 @@ class Lines(NamedTuple):
     linear_mass: np.ndarray  # (s,) [kg/m]
     diameter: np.ndarray  # (s,) [m], 0: the air does not feel it
     drag_coefficient: np.ndarray  # (s,)
+    capacity: np.ndarray  # (s,) [J/m/K] of a warm line
+    absorptivity: np.ndarray  # (n,) of a warm line's surface
+    emissivity: np.ndarray  # (n,)
     expansion: np.ndarray  # (n,) [1/K]
     reference: np.ndarray  # (n,) [K], temperature at which `rest` holds
     warm: np.ndarray  # (n + 1,) int64, where the temperatures of each line's segments start; none for a cold line
@@ -135,6 +140,34 @@ class Lines(NamedTuple):
 NO_REEL, RATE_REEL, TENSION_REEL = range(3)
 
 
+NO_CIRCUIT, PROFILE, SERIES, BARE = range(4)
+
+
+class Circuits(NamedTuple):
+    """How the current of each line comes about, one row a line; what a kind does not use is zero, or no rows of a table."""
+
+    kind: np.ndarray  # (n,) int64, NO_CIRCUIT, PROFILE, SERIES or BARE
+    commanded: np.ndarray  # (n,) int64
+    resistance: np.ndarray  # (n,) [ohm/m] at the reference temperature
+    coefficient: np.ndarray  # (n,) [1/K]
+    reference: np.ndarray  # (n,) [K]
+    load: np.ndarray  # (n,) [ohm]
+    contactors: np.ndarray  # (n,) [ohm], of both
+    supply: np.ndarray  # (n,) [V], positive from A to B
+    radius: np.ndarray  # (n, 2) [m] of the sphere at A and at B, 0: a plasma contactor
+    gain: np.ndarray  # (n,) of a sphere over Parker and Murphy's current
+    emitted: np.ndarray  # (n, 2) [A] most that A and B can emit
+    cathode_at_b: np.ndarray  # (n,) int64
+    drop: np.ndarray  # (n,) [V] at the cathode
+    ion_mass: np.ndarray  # (n,) [u]
+    first_time: np.ndarray  # (n + 1,) int64, where each line's table in time starts
+    times: np.ndarray  # [s]
+    currents: np.ndarray  # [A]
+    first_share: np.ndarray  # (n + 1,) int64, and its table along the line
+    fractions: np.ndarray
+    shares: np.ndarray
+
+
 class Ambient(NamedTuple):
     """What surrounds the segments of exposed lines, one row each, held between refreshes."""
 
@@ -142,8 +175,19 @@ class Ambient(NamedTuple):
     density: np.ndarray  # (s,) [kg/m^3], of the air
     current: np.ndarray  # (s,) [A], positive from A to B
     heating: np.ndarray  # (s,) [W/m], taken in from outside and by the current
+    drive: np.ndarray  # (s,) [V], electromotive force from A to B
+    resistance: np.ndarray  # (s,) [ohm]
+    length: np.ndarray  # (s,) [m], unstretched
+    electrons: np.ndarray  # (s,) [1/m^3]
+    gather: np.ndarray  # (s,) [A/V^0.5], what a bare segment collects per root of its potential
+    chord_i: np.ndarray  # (s, 3) [m]
     emf: np.ndarray  # (n,) [V], of each line from A to B
     power: np.ndarray  # (n,) [W], electric power delivered to each line's load
+    lorentz_i: np.ndarray  # (n, 3) [N], of the field on each line's current
+    drag_i: np.ndarray  # (n, 3) [N], of the air on each line
+    cells: np.ndarray  # scratch of `dynamics.lines.bare`
+    rows: np.ndarray
+    stale: np.ndarray  # (1,) int64, 1: to be taken anew at once
 
 
 class Sliders(NamedTuple):
@@ -178,6 +222,7 @@ class Plant(NamedTuple):
     rods: Rods
     conductors: Conductors
     lines: Lines
+    circuits: Circuits
     sliders: Sliders
     user: UserLoads
     magnetic: bool  # the field is needed by some body

@@ -15,6 +15,7 @@ import numpy as np
 from fieldline.compiled import inner, kernel, merged
 from fieldline.dynamics.implicit_arrays import Implicit, new_implicit
 from fieldline.dynamics.layout import store, three
+from fieldline.dynamics.lines.ambient import new_ambient
 from fieldline.dynamics.lines.chain import END_MASS
 from fieldline.dynamics.load_log import LOADS
 from fieldline.dynamics.parameters import STATE, TANGENT, Ambient, Plant, state_size, tangent_size
@@ -71,14 +72,11 @@ def new_work(plant: Plant, evaluations: int, *, once_a_step: bool = False, loads
 
 def new_shared(plant: Plant, actuators: int = 0) -> Shared:
     """Arrays for a plant's lines and users' functions, and for the commands of so many actuators."""
-    segments, lines = len(plant.lines.rest), len(plant.lines.nodes)
     return Shared(
         outer=np.zeros((len(plant.bodies.mass), 6)),
         end_mass=np.zeros((len(plant.bodies.mass), END_MASS)),
-        tension=np.zeros(segments),
-        ambient=Ambient(
-            np.zeros((segments, 3)), np.zeros(segments), np.zeros(segments), np.zeros(segments), np.zeros(lines), np.zeros(lines)
-        ),
+        tension=np.zeros(len(plant.lines.rest)),
+        ambient=new_ambient(plant),
         state=np.zeros(13),
         reply=np.zeros(64 + len(plant.thrusters.body)),
         replies=np.zeros(1, dtype=np.int64),

@@ -69,7 +69,7 @@ class Flight:
         estimated = [any(t.body == b and t.record.role == "estimator" for t in self.software) for b in range(len(scenario.body))]
         self.sensors = made.sensors_of(scenario, self.plant, estimated, middle)
         self.inputs = inputs_of(scenario, self.plant)
-        self.schedule = made.schedule_of(scenario, self.software, scenario.time.output_step_s)
+        self.schedule = made.schedule_of(scenario, self.plant, self.software, scenario.time.output_step_s)
         self.stepping = stepping_of(scenario, self.plant, self.duration_s)
         self.events = events_of(scenario, user.events)
         self.record = made.record_of(scenario, self.plant, self.schedule, len(self.actuators.body), self.duration_s)

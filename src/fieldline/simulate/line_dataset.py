@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from fieldline.dynamics.layout import starts_in_state
-from fieldline.dynamics.parameters import STATE
+from fieldline.dynamics.parameters import NO_CIRCUIT, STATE
 from fieldline.simulate.assembly.lines import line_names
 
 
@@ -66,14 +66,21 @@ def _length(data, flight, rows: int, k: int, name: str) -> None:
 
 
 def _along(data, flight, rows: int, k: int, name: str) -> None:
-    """Tension, and where there is any, current of each segment; NaN for segments that are not out."""
+    """Tension, and where there are any, temperature and current of each segment; NaN for segments that are not out."""
     lines, record = flight.plant.lines, flight.record
     segments = slice(lines.first[k] + k, lines.first[k + 1] + k + 1)
     there = np.arange(segments.stop - segments.start) <= record.nodes[:rows, k, None]
     dims = ("time", f"segment_{name}")
     _set(data, f"tension_{name}", dims, np.where(there, record.tension[:rows, segments], np.nan), "N", f"tension along {name}")
-    current = record.current[:rows, segments]
-    if np.any(current):
-        _set(data, f"current_{name}", dims, np.where(there, current, np.nan), "A", f"current along {name}, from from_body on")
+    if lines.warm[k + 1] > lines.warm[k]:
+        first = starts_in_state(flight.plant)[2]
+        warmth = record.state[:rows, first + lines.warm[k] : first + lines.warm[k + 1]]
+        _set(data, f"temperature_{name}", dims, np.where(there, warmth, np.nan), "K", f"temperature along {name}")
+    if flight.plant.circuits.kind[k] != NO_CIRCUIT:
+        current = np.where(there, record.current[:rows, segments], np.nan)
+        _set(data, f"current_{name}", dims, current, "A", f"current along {name}, from from_body on")
         for j, (key, units, words) in enumerate((("emf", "V", "electromotive force"), ("power", "W", "power delivered"))):
             _set(data, f"{key}_{name}", "time", record.circuit[:rows, k, j], units, f"{words} of {name}")
+        _set(data, f"lorentz_force_i_{name}", ("time", "axis"), record.circuit[:rows, k, 2:5], "N", f"field on {name}", "i")
+    if np.any(record.circuit[:rows, k, 5:8]):
+        _set(data, f"drag_force_i_{name}", ("time", "axis"), record.circuit[:rows, k, 5:8], "N", f"air on {name}", "i")

@@ -3,6 +3,8 @@
 from fieldline.vehicle.conductor import Conductor
 from fieldline.vehicle.hysteresis_rod import HysteresisRod
 from fieldline.vehicle.line import Line
+from fieldline.vehicle.line_circuit import LineCircuit
+from fieldline.vehicle.line_heat import LineHeat
 from fieldline.vehicle.magnetorquer import Magnetorquer
 from fieldline.vehicle.surfaces import Drag, SolarPressure
 from fieldline.vehicle.thruster import Thruster
@@ -20,5 +22,7 @@ __all__ = [
     "SolarPressure",
     "UserLoad",
     "Line",
+    "LineCircuit",
+    "LineHeat",
     "Conductor",
 ]

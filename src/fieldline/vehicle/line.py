@@ -9,6 +9,8 @@ from pydantic import Field, model_validator
 from fieldline.records import Record, RecordError
 from fieldline.records.names import Name
 from fieldline.records.values import Direction, Vector
+from fieldline.vehicle.line_circuit import LineCircuit
+from fieldline.vehicle.line_heat import LineHeat
 from fieldline.vehicle.reel import Reel
 from fieldline.vehicle.user_load import UserLoad
 
@@ -23,7 +25,9 @@ class Stretch(Record):
     stiffness_n: float | None = Field(default=None, gt=0.0, description="axial stiffness [N]; the line's by default")
     damping_n_s: float | None = Field(default=None, ge=0.0, description="axial damping [N s]; the line's by default")
     mass_per_length_kg_m: float | None = Field(default=None, gt=0.0, description="mass per length [kg/m]; the line's by default")
-    diameter_m: float | None = Field(default=None, ge=0.0, description="diameter, or width of a tape [m]; the line's by default")
+    diameter_m: float | None = Field(
+        default=None, ge=0.0, description="diameter, of a tape its circumference over pi [m]; the line's by default"
+    )
 
 
 class Slider(Record):
@@ -62,11 +66,15 @@ class Line(Record):
         default=0, ge=0, le=MOST_NODES, description="point masses along it, evenly spaced; with a reel, when all of it is out"
     )
     mass_per_length_kg_m: float = Field(default=0.0, ge=0.0, description="mass per unstretched length [kg/m]; 0: without mass")
-    diameter_m: float = Field(default=0.0, ge=0.0, description="diameter, or width of a tape, for air and heat [m]")
+    diameter_m: float = Field(
+        default=0.0, ge=0.0, description="diameter, of a tape its circumference over pi, for air, light and plasma [m]"
+    )
     drag_coefficient: float = Field(default=2.2, ge=0.0, description="of the line across the flow [-]")
     stretch: Annotated[tuple[Stretch, ...], Field(strict=False)] = Field(
         default=(), description="parts of other materials; the line's own keys hold for what is not given and for the rest of it"
     )
+    heat: LineHeat | None = Field(default=None, description="temperature of its segments, which length and resistance follow")
+    circuit: LineCircuit | None = Field(default=None, description="current along it")
     reel: Reel | None = Field(default=None, description="a reel on to_body that pays the line out and takes it in")
     slider: Annotated[tuple[Slider, ...], Field(strict=False)] = Field(
         default=(), description="attachments that move along an axis of their body"
@@ -83,6 +91,10 @@ class Line(Record):
             found.append(("mass_per_length_kg_m", "must be more than zero for a line with nodes; or leave nodes out"))
         if self.nodes == 0 and self.load:
             found.append(("load", "acts on nodes, and the line has none; give nodes"))
+        if self.heat is not None and (self.mass_per_length_kg_m == 0.0 or self.diameter_m == 0.0):
+            found.append(("heat", "needs mass_per_length_kg_m and diameter_m above zero: what warms up, and what it is lit on"))
+        if self.circuit is not None and self.circuit.mode == "bare" and self.diameter_m == 0.0:
+            found.append(("circuit", "needs diameter_m above zero: a bare line collects over its surface"))
         whole = self.whole_length_m
         parts = sum(one.length_m for one in self.stretch)
         if parts > whole * (1.0 + 1e-9):

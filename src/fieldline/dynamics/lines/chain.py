@@ -24,6 +24,7 @@ from math import sqrt
 from fieldline.compiled import inner, merged
 from fieldline.dynamics.layout import NOTHING, attitude_at, feeds_at, nodes_at, store, temperatures_at, three
 from fieldline.dynamics.lines.feed import feed_acceleration, feed_loads, passage_push
+from fieldline.dynamics.lines.heat import warming
 from fieldline.dynamics.lines.segment_loads import segment_load
 from fieldline.dynamics.load_log import LINES, impose
 from fieldline.dynamics.loads.joint import joint_torque
@@ -215,8 +216,21 @@ def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
 
 
 @inner
+def warm_line(k, z, plant, ambient, out):
+    """Rates of the temperatures of line k into `out`; what is on a reel stays as it is."""
+    lines, at = plant.lines, temperatures_at(plant) + plant.lines.warm[k]
+    for j in range(lines.warm[k + 1] - lines.warm[k]):
+        out[at + j] = 0.0
+        if j <= lines.nodes[k]:
+            s = lines.first[k] + k + j
+            out[at + j] = warming(z[at + j], ambient.heating[s], lines.diameter[s], lines.emissivity[k], lines.capacity[s])
+
+
+@inner
 def lines_rates(t, z, start, dcm_ei, plant, inputs, shared, log, out):
     """All lines: rates of nodes and feeds into `out`, loads on the bodies into shared.outer and shared.end_mass."""
     shared.end_mass[:, :] = 0.0
     for k in range(plant.lines.nodes.shape[0]):
         line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out)
+        if plant.lines.warm[k + 1] > plant.lines.warm[k]:
+            warm_line(k, z, plant, shared.ambient, out)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fieldline.dynamics.parameters import Inputs, Plant
+from fieldline.simulate.assembly.circuits import command_limits, told_at_first
 from fieldline.simulate.assembly.lines import sliders
 from fieldline.simulate.assembly.plant import each
 from fieldline.simulate.loop import records as loop
@@ -42,10 +43,15 @@ def _kinds(scenario) -> list[list[tuple[int, int, float, float, float]]]:
         [(b, k, -w.torque_max_n_m, w.torque_max_n_m, w.quantum_n_m) for k, (b, w) in enumerate(each(bodies, "wheel"))],
         [(b, k, 0.0, 1.0, 0.0) for k, (b, _) in enumerate(each(bodies, "thruster"))],
         [(b, k, -c.current_max_a, c.current_max_a, 0.0) for k, (b, c) in enumerate(each(bodies, "conductor"))],
-        [],
+        [(at_end[k], k, *command_limits(line.circuit), 0.0) for k, line in enumerate(lines) if obeys(line)],
         [(at_end[k], k, *_reel_limits(line.reel), 0.0) for k, line in enumerate(lines) if line.reel is not None],
         [(_body_of(scenario, k, one), j, -one.travel_m, one.travel_m, 0.0) for j, (k, one) in enumerate(sliders(scenario))],
     ]
+
+
+def obeys(line) -> bool:
+    """Whether a law commands a line's circuit."""
+    return line.circuit is not None and line.circuit.commanded
 
 
 def _reel_limits(reel) -> tuple[float, float]:
@@ -86,7 +92,7 @@ def inputs_of(scenario, plant: Plant) -> Inputs:
         wheel_torque=np.zeros(len(plant.wheels.body)),
         thrust=np.zeros(len(plant.thrusters.body)),
         current=np.zeros(len(plant.conductors.body)),
-        circuit=np.zeros(len(reels)),
+        circuit=told_at_first(scenario),
         reel=np.array(told, dtype=float),
         slide_from=place.copy(),
         slide_to=place.copy(),

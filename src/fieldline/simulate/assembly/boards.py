@@ -79,8 +79,8 @@ def sensors_of(scenario, plant: Plant, estimated: list[bool], middle) -> loop.Se
     return loop.Sensors(suite=fresh(table), gyro_bias=table.gyros.bias.copy(), field=field)
 
 
-def schedule_of(scenario, software, step_s: float) -> loop.Schedule:
-    """Sensors, estimators, controllers, duty cycles and outputs, in the order in which they are done at one time."""
+def schedule_of(scenario, plant: Plant, software, step_s: float) -> loop.Schedule:
+    """Lines' surroundings, sensors, estimators, laws, duty cycles, outputs, in the order in which they are done at one time."""
     rows = []
     for key, kind in KINDS.items():
         for b, body in enumerate(scenario.body):
@@ -93,6 +93,8 @@ def schedule_of(scenario, software, step_s: float) -> loop.Schedule:
         if body.duty_cycle is not None:
             cycle = body.duty_cycle
             rows += [(loop.TORQUE_ON, b, cycle.period_s, 0.0), (loop.TORQUE_OFF, b, cycle.period_s, cycle.torque_on_s)]
+    if any(plant.lines.exposed) or plant.lines.warm[-1]:
+        rows.insert(0, (loop.AMBIENT, 0, scenario.integrator.line_update_s, 0.0))
     rows.append((loop.OUTPUT, 0, step_s, 0.0))
     kind, who, period, phase = zip(*rows, strict=True)
     return loop.Schedule(
@@ -114,7 +116,7 @@ def record_of(scenario, plant: Plant, schedule: loop.Schedule, actuators: int, d
             samples += int((duration_s - phase) / period + 1e-6) + 2
     widest = max([4, *(len(b.sun_sensor.normals_b) for b in scenario.body if b.sun_sensor)])
     lines, segments = len(plant.lines.nodes), len(plant.lines.rest)
-    row = state_size(plant) + bodies * (11 + 6 * len(LOADS)) + 2 * segments + 3 * lines
+    row = state_size(plant) + bodies * (11 + 6 * len(LOADS)) + 2 * segments + 9 * lines
     numbers = rows * row + samples * (2 + widest)
     if numbers > MOST_NUMBERS:
         raise InputError(
@@ -132,7 +134,7 @@ def record_of(scenario, plant: Plant, schedule: loop.Schedule, actuators: int, d
         nodes=np.zeros((rows, lines), dtype=np.int64),
         tension=np.zeros((rows, segments)),
         current=np.zeros((rows, segments)),
-        circuit=np.zeros((rows, lines, 2)),
+        circuit=np.zeros((rows, lines, 8)),
         samples=np.zeros((samples, 2 + widest)),
         start=np.zeros((bodies, 4)),
         z=np.zeros(tangent_size(plant)),

@@ -17,7 +17,7 @@ def start_lines(scenario, plant: Plant, y: np.ndarray, taut: dict[int, object]) 
 
     taut: the states of lines on which bodies hang. Other lines lie straight between their ends, as taut as these ask.
     """
-    nodes, feeds, _ = starts_in_state(plant)
+    nodes, feeds, temperatures = starts_in_state(plant)
     for k, line in enumerate(scenario.line):
         first, out = int(plant.lines.first[k]), nodes_out(line)
         if out > 0:
@@ -26,6 +26,8 @@ def start_lines(scenario, plant: Plant, y: np.ndarray, taut: dict[int, object]) 
             rows[:, :3], rows[:, 3:] = state.position_i[1:-1], state.velocity_i[1:-1]
         y[feeds + 2 * k] = last_length(line)
         y[feeds + 2 * k + 1] = 0.0 if line.reel is None else line.reel.rate_m_s
+        if line.heat is not None:
+            y[temperatures + plant.lines.warm[k] : temperatures + plant.lines.warm[k + 1]] = line.heat.start_temperature_k
 
 
 def _straight(scenario, k: int, y: np.ndarray):

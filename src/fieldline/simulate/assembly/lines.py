@@ -24,7 +24,6 @@ MATERIAL = {
     "mass_per_length_kg_m": "mean",
     "diameter_m": "mean",
 }  # how a segment's value follows from those of its parts
-ROOM_TEMPERATURE_K = 293.15
 
 
 def lines_of(scenario) -> Lines:
@@ -32,7 +31,6 @@ def lines_of(scenario) -> Lines:
     lines = scenario.line
     ends = [(scenario.index_of(line.from_body), scenario.index_of(line.to_body)) for line in lines]
     materials = [_materials(line) for line in lines]
-    count = len(lines)
     return Lines(
         body=np.array(ends, dtype=np.int64).reshape(-1, 2),
         point=np.array([(*line.from_point_b_m, *line.to_point_b_m) for line in lines], dtype=float).reshape(-1, 6),
@@ -47,10 +45,13 @@ def lines_of(scenario) -> Lines:
         linear_mass=_joined([one["mass_per_length_kg_m"] for one in materials]),
         diameter=_joined([one["diameter_m"] for one in materials]),
         drag_coefficient=_joined([np.full(line.nodes + 1, line.drag_coefficient) for line in lines]),
-        expansion=np.zeros(count),
-        reference=np.full(count, ROOM_TEMPERATURE_K),
-        warm=np.zeros(count + 1, dtype=np.int64),
-        exposed=np.zeros(count, dtype=np.int64),
+        capacity=_joined([_capacity(line, one["mass_per_length_kg_m"]) for line, one in zip(lines, materials, strict=True)]),
+        absorptivity=np.array([line.heat.absorptivity if line.heat else 0.0 for line in lines], dtype=float),
+        emissivity=np.array([line.heat.emissivity if line.heat else 0.0 for line in lines], dtype=float),
+        expansion=np.array([line.heat.expansion_1_k if line.heat else 0.0 for line in lines], dtype=float),
+        reference=np.array([line.heat.reference_temperature_k if line.heat else 1.0 for line in lines], dtype=float),
+        warm=np.cumsum([0, *(line.nodes + 1 if line.heat else 0 for line in lines)]).astype(np.int64),
+        exposed=np.array([is_exposed(scenario, line) for line in lines], dtype=np.int64),
         reel=np.array([NO_REEL if line.reel is None else REELS[line.reel.mode] for line in lines], dtype=np.int64),
         reel_lag=np.array([_lag(line.reel) for line in lines], dtype=float),
         spacing=np.array([spacing(line) for line in lines], dtype=float),
@@ -146,6 +147,18 @@ def _materials(line) -> dict[str, np.ndarray]:
                 compliance = np.where(share > 0.0, share / values, 0.0).sum(axis=1)
                 found[key] = 1.0 / compliance
     return found
+
+
+def is_exposed(scenario, line) -> bool:
+    """Whether air or current act on a line."""
+    air = scenario.environment.atmosphere.model != "none" and line.drag_coefficient > 0.0
+    wide = line.diameter_m > 0.0 or any(part.diameter_m for part in line.stretch)
+    return line.circuit is not None or (air and wide)
+
+
+def _capacity(line, linear_mass: np.ndarray) -> np.ndarray:
+    """(segments,) heat capacity per length [J/m/K]; 1 for a line without temperature."""
+    return linear_mass * line.heat.specific_heat_j_kg_k if line.heat else np.ones_like(linear_mass)
 
 
 def _joined(parts) -> np.ndarray:

@@ -26,6 +26,7 @@ from fieldline.environment.field_record import FieldParams
 from fieldline.environment.field_registry import field_model
 from fieldline.environment.gravity import gravity_model
 from fieldline.mechanics.rigid_body import as_inertia9
+from fieldline.simulate.assembly.circuits import circuits_of
 from fieldline.simulate.assembly.lines import lines_of, sliders_of
 from fieldline.simulate.scenario.states import earth_orientation
 
@@ -43,6 +44,7 @@ def plant_of(scenario, duration_s: float, load_slots=()) -> Plant:
         rods=_rods(bodies),
         conductors=_conductors(bodies),
         lines=lines_of(scenario),
+        circuits=circuits_of(scenario),
         sliders=sliders_of(scenario),
         user=_user_loads(scenario, load_slots),
         magnetic=any(map(is_magnetic, bodies)),
@@ -59,6 +61,7 @@ def surroundings_of(scenario, duration_s: float) -> Surroundings:
         field=no_field() if uniform is not None else fresh(environment.field_model().at(middle)),
         uniform_field_i=np.array(uniform if uniform is not None else (0.0, 0.0, 0.0), dtype=float),
         atmosphere=fresh(air_of(environment.atmosphere, start, duration_s)),
+        plasma=fresh(environment.plasma.made()),
         ephemeris=fresh(ephemeris_table(start, duration_s, earth_orientation(scenario))),
         rotating=environment.gravity != "point",
     )

@@ -105,6 +105,7 @@ def drive(t, k, value, period, run):
         inputs.current[row] = value
     elif k < actuators.ends[CIRCUIT]:
         inputs.circuit[row] = value
+        run.shared.ambient.stale[0] = 1
     elif k < actuators.ends[REEL]:
         inputs.reel[row] = value
     else:

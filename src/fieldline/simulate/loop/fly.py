@@ -15,8 +15,9 @@ from math import ceil
 
 from fieldline.compiled import inner, kernel, merged
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M
-from fieldline.dynamics.layout import nodes_at, three
 from fieldline.dynamics.implicit_step import allow_motion, attempt_implicit
+from fieldline.dynamics.layout import nodes_at, three
+from fieldline.dynamics.lines.ambient import refresh
 from fieldline.dynamics.lines.chain import slide
 from fieldline.dynamics.loads.magnetic import torquer_moment
 from fieldline.dynamics.parameters import STATE
@@ -30,6 +31,7 @@ from fieldline.integrate.steps import error_norm, error_scale, next_step
 from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, next_filling, obey, switch_torquers
 from fieldline.simulate.loop.flight_software import run_task
 from fieldline.simulate.loop.records import (
+    AMBIENT,
     CIRCUIT,
     CONDUCTOR,
     DIPOLE,
@@ -105,6 +107,9 @@ def write_lines(row, run):
         record.nodes[row, k] = run.plant.lines.nodes[k]
         record.circuit[row, k, 0] = shared.ambient.emf[k]
         record.circuit[row, k, 1] = shared.ambient.power[k]
+        for i in range(3):
+            record.circuit[row, k, 2 + i] = shared.ambient.lorentz_i[k, i]
+            record.circuit[row, k, 5 + i] = shared.ambient.drag_i[k, i]
     for s in range(record.tension.shape[1]):
         record.tension[row, s] = shared.tension[s]
         record.current[row, s] = shared.ambient.current[s]
@@ -140,6 +145,13 @@ def write_row(t, y, run, loads, call):
         write_lines(row, run)
 
 
+@inner
+def look_around(t, period, run):
+    """Take anew what surrounds lines, for the middle of the time to come."""
+    lift(run.y, run.record.start, run.record.z)
+    refresh(t, 0.5 * period, run.record.z, run.record.start, run.plant, run.inputs, run.shared.ambient)
+
+
 @merged
 def do_due(t, run, laws, memories, parameters, loads, call, rng):
     """Everything that is due at t; 0 or the outcome that ends the run."""
@@ -160,10 +172,14 @@ def do_due(t, run, laws, memories, parameters, loads, call, rng):
                 write_row(t, run.y, run, loads, call)
         elif kind == TORQUE_OFF or kind == TORQUE_ON:
             switch_torquers(t, who, kind == TORQUE_OFF, run)
+        elif kind == AMBIENT:
+            look_around(t, schedule.period[j], run)
         else:
             sample(t, j, kind, who, run, rng)
     cease_fire(t, run.inputs, run.actuators)
     obey(t, run)
+    if run.shared.ambient.stale[0] != 0:
+        look_around(t, 0.0, run)
     return 0
 
 

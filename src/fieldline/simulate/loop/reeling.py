@@ -86,6 +86,7 @@ def appear(t, k, y, run):
     store(y, new + 3, add(speed, away_rate))
     was, full = lines.linear_mass[j] * y[feed], lines.linear_mass[j] * lines.spacing[k]
     lines.nodes[k] = nodes + 1
+    run.shared.ambient.stale[0] = 1
     y[feed] = rest / grown
     now = lines.linear_mass[j + 1] * y[feed]
     if nodes == 0:
@@ -122,6 +123,7 @@ def vanish(t, k, y, run):
         y[warm] += share * (y[warm + 1] - y[warm])
     was, full = lines.linear_mass[j + 1] * y[feed], lines.linear_mass[j] * lines.rest[j]
     lines.nodes[k] = left
+    run.shared.ambient.stale[0] = 1
     y[feed] = rest / growth(k, left, y, plant)
     now = lines.linear_mass[j] * y[feed]
     reweigh(t, k, 1, 0.5 * (now - was), now - full - was, run)

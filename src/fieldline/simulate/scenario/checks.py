@@ -111,18 +111,24 @@ def _software(scenario) -> Found:
             yield f"{path}.body", f"is missing: which of {', '.join(one.name for one in scenario.body)[:80]}?"
         elif not unknown:
             body = scenario.body[scenario.index_of(task.body)]
-            if body.kind == "point" and not reeled(scenario, body):
+            if body.kind == "point" and not (reeled(scenario, body) or commanded(scenario, body)):
                 yield f"{path}.body", f'names "{body.name}", a point mass, which has nothing to command'
             else:
                 yield from actuators_missing(f"{path}.commands", task.commands, scenario, body)
 
 
 def reeled(scenario, body) -> list:
-    """Lines that a body's flight software commands at their end: those with a reel or a circuit."""
+    """Lines whose reel a body's flight software commands."""
     return [line for line in scenario.line if line.to_body == body.name and line.reel is not None]
 
 
 def sliding(scenario, body) -> list:
+def commanded(scenario, body) -> list:
+    """Lines whose current a body's flight software commands."""
+    mine = [line.circuit for line in scenario.line if line.to_body == body.name]
+    return [circuit for circuit in mine if circuit is not None and circuit.commanded]
+
+
     """Sliders of the attachments on a body."""
     ends = [(line, one) for line in scenario.line for one in line.slider]
     return [one for line, one in ends if getattr(line, f"{one.end}_body") == body.name]
@@ -132,7 +138,10 @@ def actuators_missing(path: str, commands: Iterable[str], scenario, body) -> Fou
     """Commands for which the body has no actuator."""
     for command in commands:
         if command == "current":
-            there, what = body.conductor, "[[body.conductor]], and no [line.circuit] is at its end of a line"
+            there, what = (
+                [*body.conductor, *commanded(scenario, body)],
+                "[[body.conductor]] or commanded [line.circuit] on a line with that to_body",
+            )
         elif command == "reel":
             there, what = reeled(scenario, body), "[line.reel] on a line with that to_body"
         elif command == "attachment":
@@ -160,11 +169,22 @@ def _models(scenario) -> Found:
         if body.onboard is not None:
             yield from _field_of(f"body[{k}].onboard.field", body.onboard, scenario.time)
     model = scenario.environment.field_model()
+    for k, line in enumerate(scenario.line):
+        if line.circuit is not None and collects(line.circuit) and scenario.environment.plasma.model == "none":
+            yield (
+                f"line[{k}].circuit",
+                'collects electrons: give [environment.plasma] with model = "chapman", "constant" or "table"',
+            )
     if model is not None:
         yield from _year("time.start_utc", model, scenario.time)
 
 
 def _field_of(path: str, onboard, span) -> Found:
+def collects(circuit) -> bool:
+    """Whether a circuit takes electrons from the plasma by itself."""
+    return circuit.mode == "bare" or any(circuit.collector_radius_m)
+
+
     """The model on board exists and knows the year."""
     from fieldline.environment.field_registry import field_model
 

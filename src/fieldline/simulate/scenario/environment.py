@@ -1,4 +1,4 @@
-"""What surrounds the bodies: magnetic field, gravity, air, Earth rotation."""
+"""What surrounds the bodies: magnetic field, gravity, air, plasma, Earth rotation."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from fieldline.records import Record, RecordError
 from fieldline.records.values import Vector
+from fieldline.simulate.scenario.plasma import Plasma
 
 NUMBERS = {
     "exponential": ("reference_density_kg_m3", "reference_altitude_km", "scale_height_km"),
@@ -60,7 +61,7 @@ class Atmosphere(Record):
 
 
 class Environment(Record):
-    """Magnetic field, gravity, air and Earth rotation."""
+    """Magnetic field, gravity, air, plasma and Earth rotation."""
 
     field: str = Field(default="IGRF-14", min_length=1, description="name of the field model (`fieldline models` lists them)")
     field_degree: int | None = Field(default=None, ge=1, le=200, description="highest degree of its harmonics; all by default")
@@ -82,6 +83,7 @@ class Environment(Record):
         default=None, ge=2, le=70, description='highest degree for gravity = "harmonic"; 20 by default'
     )
     atmosphere: Atmosphere = Field(default=Atmosphere(), description="density of the air, for drag")
+    plasma: Plasma = Field(default=Plasma(), description="electrons of the ionosphere, for lines that collect current")
     earth_orientation: str | None = Field(
         default=None,
         min_length=1,

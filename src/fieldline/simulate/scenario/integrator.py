@@ -42,6 +42,9 @@ class Integrator(Record):
         default="stage",
         description='magnetic field at each stage of a step, or, with rk4, once per "step": faster, second order in the step',
     )
+    line_update_s: float = Field(
+        default=2.0, gt=0.0, le=60.0, description="how often field, air, plasma, light and current along lines are taken anew [s]"
+    )
 
     @model_validator(mode="after")
     def _sees_its_error(self):
