@@ -15,6 +15,7 @@ from fieldline.control import (
     wheel_pointing,
 )
 from fieldline.control.law import Law
+from fieldline.control.tracking import designs as tracking
 from fieldline.errors import InputError, nearest, shown
 
 _FAMILIES = (
@@ -28,6 +29,7 @@ _FAMILIES = (
     mode_manager,
     reel,
     tethered_attitude,
+    tracking,
 )
 
 LAWS: dict[str, Law] = {law.name: law for family in _FAMILIES for law in family.LAWS}

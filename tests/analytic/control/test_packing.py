@@ -6,7 +6,7 @@ import pytest
 from fieldline.control import LAWS, law_named
 from fieldline.control.law import COMMANDS
 from fieldline.errors import InputError
-from law_tests import CONTEXT, REQUIRED
+from law_tests import CONTEXT, REQUIRED, context_of
 
 
 @pytest.mark.parametrize("name", sorted(LAWS))
@@ -22,7 +22,7 @@ def test_every_law_is_described(name):
 
 @pytest.mark.parametrize("name", sorted(LAWS))
 def test_defaults_pack_to_finite_numbers(name):
-    params = LAWS[name].pack(REQUIRED.get(name, {}), CONTEXT)
+    params = LAWS[name].pack(REQUIRED.get(name, {}), context_of(name))
     assert params.ndim == 1 and params.dtype == float and params.flags.c_contiguous and np.isfinite(params).all()
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from fieldline.constants import EARTH_GM_M3_S2
@@ -25,7 +27,8 @@ class Design:
         from fieldline.control import DesignContext
 
         body = self._scenario.body[b]
-        position, velocity = start_states(self._scenario)[b]
+        near = 0 if body.offset_o_m is not None else b  # a body beside the first shares its orbit
+        position, velocity = start_states(self._scenario)[near]
         momentum = np.cross(position, velocity)
         energy = 0.5 * velocity @ velocity - EARTH_GM_M3_S2 / np.linalg.norm(position)
         axis = -0.5 * EARTH_GM_M3_S2 / energy
@@ -38,7 +41,7 @@ class Design:
             period_s=period_s,
             moment_max_a_m2=np.sum(moments, axis=0) if moments else np.zeros(3),
             wheel_axes_b=np.array([one.axis_b for one in body.wheel]).reshape(-1, 3),
-            field_along_orbit=lambda: field_along(self._scenario, b, 2.0 * np.pi / mean_motion),
+            field_along_orbit=lambda: field_along(self._scenario, b, position, velocity, 2.0 * np.pi / mean_motion),
             mass_kg=body.mass_kg,
             radius_m=float(axis),
             conductors=body.conductor,
@@ -61,8 +64,8 @@ def line_ends_on(scenario, name: str):
     return tuple(found)
 
 
-def field_along(scenario, b: int, period_s: float):
-    """(seconds, field_o, field_i) of the on-board model over the nominal orbits of about a day [T].
+def field_along(scenario, b: int, position, velocity, period_s: float):
+    """(seconds, field_o, field_i) of body b's on-board model over the nominal orbits of about a day from a state [T].
 
     The orbit has the oblateness but no air; a day lets the Earth turn once under it.
     """
@@ -70,7 +73,7 @@ def field_along(scenario, b: int, period_s: float):
     from fieldline.frames.earth_rotation import dcm_ei
     from fieldline.frames.orbital import dcm_oi
 
-    position, velocity = nominal_orbit(*start_states(scenario)[b], period_s)
+    position, velocity = nominal_orbit(tuple(position), tuple(velocity), period_s)
     seconds = np.arange(len(position)) * period_s / SAMPLES_PER_ORBIT
     model = onboard_model(scenario, scenario.body[b])
     if model is None:
@@ -83,8 +86,9 @@ def field_along(scenario, b: int, period_s: float):
     return seconds, np.einsum("nij,nj->ni", dcm_oi(position, velocity), field_i), field_i
 
 
-def nominal_orbit(position, velocity, period_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and velocities, GCRS axes, over the whole orbits of about a day, with the oblateness alone."""
+@lru_cache(maxsize=8)
+def nominal_orbit(position: tuple, velocity: tuple, period_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and velocities, GCRS axes, over the whole orbits of about a day, with the oblateness alone; kept."""
     from scipy.integrate import solve_ivp
 
     from fieldline.environment.gravity import gravity_kernel, gravity_model
