@@ -44,7 +44,7 @@ class Tick(NamedTuple):
 def watch(job: Job, live: Live) -> int:
     """Read until the stream ends, is interrupted or falls silent; 0 where there is an estimate then, else 1."""
     from fieldline.cli.attitude import read_calibration
-    from fieldline.estimation.skiprope_telemetry import LiveSkiprope
+    from fieldline.estimation.skiprope_telemetry import SkipropeStream
     from fieldline.telemetry.mapping import read_mapping
     from fieldline.telemetry.stream import RowReader
 
@@ -59,7 +59,7 @@ def watch(job: Job, live: Live) -> int:
     mapping = read_mapping(source.mapping, None, None, three_names(source.mag_columns), source.time_column, source.unit)
     reader = RowReader(NAME if str(job.telemetry) == STREAM else str(job.telemetry), mapping)
     settings = settings_of(job, chosen(read, _now()))
-    estimator = LiveSkiprope(settings, _orbit(source), memory_s=live.memory_s, every_s=live.every_s)
+    estimator = SkipropeStream(settings, _orbit(source), memory_s=live.memory_s, every_s=live.every_s)
     if state is not None:
         estimator.resume(state, f'the state "{live.state}"')
         _say(f"going on after {estimator.recent.counts['rows']:,} rows, the newest of {estimator.recent.newest_utc} UTC.", job)

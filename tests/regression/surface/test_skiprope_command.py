@@ -14,7 +14,7 @@ import pytest
 
 import fieldline as fl
 from fieldline.cli import main
-from fieldline.estimation.skiprope_telemetry import LiveSkiprope, SkipropeSettings
+from fieldline.estimation.skiprope_telemetry import SkipropeStream, SkipropeSettings
 from fieldline.estimation.skiprope_telemetry.face import rows_of
 from fieldline.telemetry import telemetry_of
 from fieldline.telemetry.skiprope_csv import skiprope_columns, skiprope_line
@@ -238,7 +238,7 @@ def test_live_says_what_a_file_says(method):
     rows = rows_of(record.telemetry)
     said = []
     for size in (701, 64):
-        stream = LiveSkiprope(
+        stream = SkipropeStream(
             SkipropeSettings(tether_length_m=LENGTH_M, method=method), sample_orbit(), memory_s=2000.0, every_s=500.0
         )
         said.append([])

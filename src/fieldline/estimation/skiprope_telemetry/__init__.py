@@ -1,8 +1,8 @@
-"""The skiprope of flown telemetry: from a file and an orbit (`estimate_skiprope`), or from rows as they come (`LiveSkiprope`)."""
+"""The skiprope of flown telemetry: from a file and an orbit (`estimate_skiprope`), or from rows that come (`SkipropeStream`)."""
 
 from fieldline.estimation.skiprope_telemetry.face import estimate_skiprope
-from fieldline.estimation.skiprope_telemetry.live import LiveSkiprope
 from fieldline.estimation.skiprope_telemetry.mounting import Mounting
+from fieldline.estimation.skiprope_telemetry.skiprope_stream import SkipropeStream
 from fieldline.estimation.skiprope_telemetry.solving import METHODS, SkipropeSettings
 
-__all__ = ["estimate_skiprope", "LiveSkiprope", "Mounting", "SkipropeSettings", "METHODS"]
+__all__ = ["estimate_skiprope", "SkipropeStream", "Mounting", "SkipropeSettings", "METHODS"]

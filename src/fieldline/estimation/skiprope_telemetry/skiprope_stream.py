@@ -34,7 +34,7 @@ class Said(NamedTuple):
     text: str
 
 
-class LiveSkiprope:
+class SkipropeStream:
     """Rows in, lines and words out. `latest` is the newest estimate, None before the first.
 
     memory_s : of the rows that an estimate is made of; twenty periods, or 4,000 s.      every_s : between estimates; half a
