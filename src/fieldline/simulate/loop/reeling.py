@@ -134,6 +134,16 @@ def vanish(t, k, y, run):
         mass = 0.5 * (lines.linear_mass[j - 1] * lines.rest[j - 1] + lines.linear_mass[j] * y[feed])
         store(y, at + 6 * left - 3, axpy(1.0 / mass, on_node, far_rate))
     kick(t, k, 1, on_reel, y, run)
+    rest_node(nodes_at(plant) + 6 * (lines.first[k] + left), run)
+
+
+@inner
+def rest_node(at, run):
+    """What the stepper keeps of a node that is no longer out, from z[at] on: its rates are not written any more."""
+    for i in range(at, at + 6):
+        run.y[i + run.plant.bodies.mass.shape[0]] = 0.0
+        for s in range(run.work.k.shape[0]):
+            run.work.k[s, i] = 0.0
 
 
 @inner
