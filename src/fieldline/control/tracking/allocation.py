@@ -20,7 +20,7 @@ from numba import njit
 from fieldline.control.tracking.bounded_squares import AT_LOWER, AT_UPPER, bounded_least
 from fieldline.errors import InputError, NoEstimateError, nearest, shown
 
-COST = 1e-8  # c of (1): of the square of loads, where all controls are at their limits
+COST = 1e-10  # c of (1): of the square of loads, where all controls are at their limits
 MET = 1e-3  # of the wanted loads, weighted: what may be missed where they count as met
 HALVINGS = 50
 
