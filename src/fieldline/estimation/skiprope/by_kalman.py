@@ -41,7 +41,7 @@ MANY = 0.05  # of the samples, passed over: worth a note
 class KalmanSettings:
     """What the filter takes for usual; SI units, `_s12` and `_s32`: over the root of a second, and of its third power."""
 
-    noise_tesla: float = 2e-8  # of a reading
+    noise_tesla: float = 1e-7  # of a reading, until its samples tell
     direction_rad: float = 2e-4  # white, of the known field
     slow_rad_s32: float = 5e-6
     slow_rate_rad_s: float = 1e-3

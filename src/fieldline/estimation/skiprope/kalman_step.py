@@ -12,7 +12,8 @@ The measured direction is the known one turned by three angles, each slow, with 
     p1, p2, wp                    the same for the pendulous motion
 
 Two numbers of a sample are used, across the predicted direction; its magnitude is not. Noise is the magnetometer's over |b|,
-and a white share of the known field's direction error. A sample further off than `GATE` deviations is passed over. The mean
+known from the samples themselves, and a white share of the known field's direction error. A sample further off than `GATE`
+deviations is passed over. The mean
 of its normalised square innovations over some two periods tells whether the filter still follows: 1 where it is consistent.
 
 Between samples the state is carried exactly for a steady w; the covariance to first order in w. Covariance updates keep
@@ -32,7 +33,9 @@ from fieldline.frames.vectors import cross, dot, norm, scale, sub, unit
 
 STATES = 16
 HEAD = 10  # of the memory, see below
-SIZE = HEAD + STATES + STATES * STATES + STATES  # head, state, covariance, room to work
+WORK = HEAD + STATES + STATES * STATES  # after head, state and covariance: room to work, and what the noise is known from
+NOISE = WORK + STATES
+SIZE = NOISE + 18
 # started; last and first time [s]; mean NIS; samples used; passed over since, of the last, of all; sums of the azimuth's offset
 STARTED, LAST, FIRST, MEAN_NIS, COUNT, MISSED, NIS, ALL_MISSED, OFF, OFF_WEIGHT = range(HEAD)
 SLOW, RATE, CONE, CONE_W, SWING, SWING_W = 0, 3, 6, 10, 11, 15
@@ -59,6 +62,7 @@ SLOW_DAMPING = 0.7
 SURE_SENSE = 2.0  # deviations by which the turning parts must differ
 GATE = 36.0  # of the squared normalised innovation
 MOST_MISSED = 20  # passed over in turn: the next is used
+GIVEN, NOISE_SAMPLES = 10.0, 500.0  # samples that the given noise counts for, and that the noise is averaged over
 OFF_MEMORY_S = 2000.0  # over which the azimuth's offset is averaged
 
 
@@ -176,7 +180,7 @@ def kalman_update(t, field_b, field_c, memory, params):
     p = covariance_of(memory)
     expected, by_a1, by_a2, by_a3 = predicted(x, unit(known))
     off = sub(scale(1.0 / size, b), expected)
-    variance = (params[0] / size) ** 2 + params[1] ** 2
+    variance = _noise(t, b, memory, params) / (size * size) + params[1] ** 2
     first, second = _across(expected)
     h1 = (dot(first, by_a1), dot(first, by_a2), dot(first, by_a3))
     h2 = (dot(second, by_a1), dot(second, by_a2), dot(second, by_a3))
@@ -189,7 +193,7 @@ def kalman_update(t, field_b, field_c, memory, params):
         memory[MISSED] += 1.0
         memory[ALL_MISSED] += 1.0
         return False
-    work = memory[SIZE - STATES :]
+    work = memory[WORK:NOISE]
     moved = _take(x, p, work, h1, h2, r1, variance)
     _take(x, p, work, h2, h1, r2 - moved, variance)
     memory[OFF] += _azimuth_ahead(x, known)
@@ -246,6 +250,33 @@ def _share(t, memory, x):
     """Weight of the newest sample in the mean of two periods, from how often samples have come."""
     interval = (t - memory[FIRST]) / max(memory[COUNT] + memory[ALL_MISSED], 1.0)
     return interval * abs(x[CONE_W]) / (4.0 * pi)
+
+
+@njit(cache=True)
+def _noise(t, b, memory, params):
+    """Variance [T^2] of a reading: fourth differences of the last samples where they are even and close, the given one before.
+
+    A motion at w passes with (2 sin(w dt / 2))^4, which is a thousandth for the pendulous one at 1 Hz.
+    """
+    now = memory[NOISE:]
+    sums, steady = 0.0, now[2] != 0.0
+    weight = GIVEN * max(1.0 - now[1] / NOISE_SAMPLES, 0.0) if now[1] > 0.0 else GIVEN
+    dt = t - now[2]
+    for k in range(3):
+        steady = steady and abs(now[2 + 4 * k] - now[6 + 4 * k] - dt) < 0.05 * dt and now[6 + 4 * k] != 0.0
+    fastest = max(abs(memory[HEAD + CONE_W]), abs(memory[HEAD + SWING_W]))
+    for i in range(3):
+        fourth = b[i] - 4.0 * now[3 + i] + 6.0 * now[7 + i] - 4.0 * now[11 + i] + now[15 + i]
+        sums += fourth * fourth / 210.0
+    if steady and dt * fastest < 0.5:
+        given = params[0] * params[0]
+        mean = (now[0] * now[1] + given * weight) / (now[1] + weight)
+        now[1] = min(now[1] + 1.0, NOISE_SAMPLES)
+        now[0] += (min(sums, 25.0 * mean) - now[0]) / now[1]
+    for j in range(17, 5, -1):
+        now[j] = now[j - 4]
+    now[2], now[3], now[4], now[5] = t, b[0], b[1], b[2]
+    return (now[0] * now[1] + params[0] * params[0] * weight) / (now[1] + weight)
 
 
 @njit(cache=True)
