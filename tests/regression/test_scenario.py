@@ -100,7 +100,7 @@ REFUSED = [
     ),
     ({"time.start_utc": 2026}, "time.start_utc must be a date and time in UTC"),
     ({"time.start_utc": "2040-01-01"}, "IGRF-14 covers 1900 to 2030"),
-    ({"integrator.method": "euler"}, 'integrator.method must be "rk4" or "dop853"; got the text "euler".'),
+    ({"integrator.method": "euler"}, 'integrator.method must be "rk4" or "dop853" or "rosenbrock"; got the text "euler".'),
     ({"environment.field": "IGRF14b"}, 'unknown field model "IGRF14b"; did you mean "IGRF-14"?'),
     ({"environment.field_degree": 14}, "degree must be a whole number from 1 to 13 for IGRF-14; got 14."),
     ({"environment.uniform_field_i_tesla": [30000, 0, 0]}, "Is it in nT?"),
@@ -347,7 +347,7 @@ def test_the_messages_on_the_page_are_what_is_said():
 def test_the_json_schema_holds_every_table_and_refuses_unknown_keys():
     schema = json_schema()
     assert schema["additionalProperties"] is False and {"time", "body"} <= set(schema["required"])
-    assert {"Body", "Magnetorquer", "Wheel", "Software", "Line"} <= set(schema["$defs"])
+    assert {"Body", "Magnetorquer", "Wheel", "Software", "TetherLine"} <= set(schema["$defs"])
     json.dumps(schema)
 
 

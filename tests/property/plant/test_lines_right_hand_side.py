@@ -50,7 +50,7 @@ def flight_of(line, gravity="j2", **two):
     second = ROPE | {"name": "second", "to_body": "three", "from_point_b_m": (0.0, 0.1, -0.5), "nodes": 2}
     second.pop("to_point_b_m")
     environment = {"field": "centred-dipole", "field_moment_e_a_m2": [(1.4e22, -0.5e22, -7.6e22)], "gravity": gravity}
-    flight = pf.Flight(pf.scenario(one, other, third, line=[line, second], environment=environment))
+    flight = pf.Flight(pf.scenario(one, other, third, line=[line, second], environment=environment, integrator={"step_s": 0.1}))
     flight.inputs.current[:] = (3.0, -2.0)
     flight.inputs.wheel_torque[:] = 0.003
     flight.inputs.reel[:] = 5.0
