@@ -26,6 +26,8 @@ from fieldline.estimation.skiprope.bandpass import (
     lowpass,
     settling_time_s,
 )
+from fieldline.estimation.skiprope.bound import Bound, cramer_rao
+from fieldline.estimation.skiprope.by_kalman import KalmanSettings
 from fieldline.estimation.skiprope.coning import axes_about, despun
 from fieldline.estimation.skiprope.cycles import extremes, fit_cycles, zero_crossings
 from fieldline.estimation.skiprope.estimate import METHODS, RULES, estimate_skiprope
@@ -38,6 +40,7 @@ from fieldline.estimation.skiprope.harmonic import (
     refined_frequency,
     smoothed,
 )
+from fieldline.estimation.skiprope.live import LiveEstimate, LiveSkiprope
 from fieldline.estimation.skiprope.position import (
     in_field_plane,
     midpoint_deflection,
@@ -70,6 +73,11 @@ __all__ = [
     "SkipropeSignals",
     "skiprope_signals",
     "detect",
+    "LiveSkiprope",
+    "LiveEstimate",
+    "KalmanSettings",
+    "cramer_rao",
+    "Bound",
     "Detection",
     "Line",
     "field_geometry",
