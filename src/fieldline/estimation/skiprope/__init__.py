@@ -28,7 +28,7 @@ from fieldline.estimation.skiprope.bandpass import (
 )
 from fieldline.estimation.skiprope.bound import Bound, cramer_rao
 from fieldline.estimation.skiprope.by_kalman import KalmanSettings
-from fieldline.estimation.skiprope.coning import axes_about, despun
+from fieldline.estimation.skiprope.coning import axes_about, cone_signals, despun
 from fieldline.estimation.skiprope.cycles import extremes, fit_cycles, zero_crossings
 from fieldline.estimation.skiprope.estimate import METHODS, RULES, estimate_skiprope
 from fieldline.estimation.skiprope.harmonic import (
@@ -114,6 +114,7 @@ __all__ = [
     "circular_parts",
     "cone_at",
     "HarmonicCone",
+    "cone_signals",
     "axes_about",
     "despun",
 ]

@@ -114,5 +114,5 @@ def _deviations(t, line, covariance) -> tuple[float, float, float, float]:
     none = np.zeros(len(when))
     numbers = derived(phasor, spread, none.astype(int), none, none, np.pi)
     names = ("amplitude_std_rad", "phase_std_rad", "plane_std_rad")
-    rms = (float(np.sqrt(np.mean(numbers[name] ** 2))) for name in names)
-    return (*rms, float(np.sqrt(covariance[4, 4])) / TURN)
+    amplitude, phase, plane = (float(np.sqrt(np.mean(numbers[name] ** 2))) for name in names)
+    return amplitude, phase, plane, float(np.sqrt(covariance[4, 4])) / TURN

@@ -9,15 +9,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldline.errors import NoEstimateError
-from fieldline.estimation.skiprope.harmonic import MEMORY_PERIODS, HarmonicCone, fit_harmonics, refined_frequency, smoothed, turns
+from fieldline.estimation.skiprope.harmonic import (
+    MEMORY_PERIODS,
+    WINDOW_PERIODS,
+    HarmonicCone,
+    fit_harmonics,
+    refined_frequency,
+    smoothed,
+    turns,
+)
 from fieldline.estimation.skiprope.signals import SkipropeSignals
 from fieldline.estimation.skiprope.solution import circular
 from fieldline.estimation.skiprope.track import Track
 
 TURN = 2.0 * np.pi
+FEWEST_SAMPLES = 60  # of a window: three times the unknowns
 SAMPLES_PER_PERIOD = 24  # of the fastest motion fitted; takes 0.3 % off its amplitude and nothing off the cone's
 ROUNDS = 2
+UNEVEN = "the phases of the windows do not advance evenly: from {:.4g} mHz the frequency ran to {:.4g} mHz, and was not followed."
+NEAR_LINE = 0.25  # of a line's width: the spectrum's top is surely nearer than this to the frequency
 SURE_SENSE = 2.0  # standard deviations by which the two turning parts must differ
 
 
@@ -25,15 +35,14 @@ def harmonic_track(signals: SkipropeSignals, rows, settings) -> Track:
     """Phasors at times `rows` (m,) [s]; see `estimate.Settings`."""
     fastest = max((settings.frequency_hz, *settings.pendulous_hz))
     thin = signals.thinned(1.0 / (SAMPLES_PER_PERIOD * fastest))
-    frequency = settings.frequency_hz
+    frequency, notes = settings.frequency_hz, ()
     for _ in range(3):
         cone = _fitted(thin, frequency, settings.pendulous_hz)
-        frequency = refined_frequency(cone)
-        if not 0.5 < frequency / settings.frequency_hz < 2.0:
-            raise NoEstimateError(
-                f"the phases of the windows do not advance evenly: from {settings.frequency_hz:.4g} Hz the frequency ran to "
-                f"{frequency:.4g} Hz; the motion is no steady cone, or the record is too short."
-            )
+        refined = refined_frequency(cone)
+        if abs(refined - settings.frequency_hz) > NEAR_LINE * settings.resolution_hz:
+            notes = (UNEVEN.format(1e3 * settings.frequency_hz, 1e3 * refined),)
+            break  # the phases say less than the spectrum: turns were lost between windows
+        frequency = refined
     memory = MEMORY_PERIODS / frequency if settings.memory_s is None else settings.memory_s
     final = smoothed(cone, memory) if memory > 0.0 else cone
     excess = _excess(cone, final) if memory > 0.0 else 1.0
@@ -54,19 +63,22 @@ def harmonic_track(signals: SkipropeSignals, rows, settings) -> Track:
         azimuth_off,
         True,
         signals.seconds[0] + cone.window_s,
-        (),
+        notes,
     )
 
 
 def _fitted(signals: SkipropeSignals, frequency_hz: float, others) -> HarmonicCone:
-    """Windows of three periods, or of the record where it is shorter."""
-    window = min(3.0 / frequency_hz, signals.span_s)
+    """Windows of three periods, longer where samples are few or another motion is near, at most the record."""
+    apart = min((abs(other - frequency_hz) for other in others), default=np.inf)
+    window = max(WINDOW_PERIODS / frequency_hz, 2.0 / apart, FEWEST_SAMPLES * signals.step_s)
+    window = min(window, signals.span_s)
     return fit_harmonics(
         signals.seconds,
         signals.field_b,
         signals.geometry,
         frequency_hz,
         window_s=window,
+        step_s=window / (2.0 * WINDOW_PERIODS),
         other_lines_hz=others,
         rounds=ROUNDS,
     )

@@ -6,7 +6,12 @@ the skiprope does,
 
     a3(t) = AZ - arg((B_S1 + i B_S2) / i)  (+ tan EL times the tilt)                                               (1)
 
-and a smooth curve through it turns the measurement back; then everything that holds for the skiprope holds.
+and a smooth curve through it turns the measurement back; then everything that holds for the skiprope holds:
+
+    signals = cone_signals(seconds, field_b, field_i, body_axis=axis_b, cone_axis=momentum_i)
+    estimate_skiprope(signals, tether_length_m=pi, yaw_std_rad=pi, band_hz=(low, high))
+
+with any length for the tether's, and a yaw of which nothing is known beforehand.
 
 Source: the remark in section V of Polites (1991), NASA TP-3123; (1) is ours.
 Valid while the tilt is small and the field is not along the axis; samples must come more often than twice a turn, or the
@@ -20,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.errors import InputError
-from fieldline.estimation.skiprope.signals import FieldGeometry
+from fieldline.estimation.skiprope.signals import FieldGeometry, SkipropeSignals, skiprope_signals
 
 
 class Despun(NamedTuple):
@@ -41,6 +46,27 @@ def axes_about(axis) -> np.ndarray:
     first = across - third * (third @ across)
     first /= np.linalg.norm(first)
     return np.stack([first, np.cross(third, first), third])
+
+
+def cone_signals(
+    seconds, field_b, field_i, *, body_axis, cone_axis, degree: int | None = 1, spin_rate_rad_s: float = 0.0
+) -> SkipropeSignals:
+    """Signals of a body that cones about a known axis while it measures a known vector.
+
+    Parameters
+    ----------
+    seconds : (n,) [s]. field_b : (n, 3) measured, body axes. field_i : (n, 3) known, axes in which the cone's stands still.
+    body_axis : (3,) of the body, that cones. cone_axis : (3,) about which it does, on the same side as body_axis.
+    degree, spin_rate_rad_s : of the spin, as in `despun`; None for a body that does not spin.
+
+    Errors: those of `axes_about` and `skiprope_signals`.
+    """
+    measured = np.asarray(field_b, dtype=float) @ axes_about(body_axis).T
+    signals = skiprope_signals(seconds, measured, np.asarray(field_i, dtype=float) @ axes_about(cone_axis).T)
+    if degree is None:
+        return signals
+    steady = despun(signals.seconds, signals.field_b, signals.geometry, degree=degree, spin_rate_rad_s=spin_rate_rad_s)
+    return SkipropeSignals(signals.seconds, steady.field_b, signals.geometry)
 
 
 def despun(seconds, field_b, geometry: FieldGeometry, *, degree: int = 1, spin_rate_rad_s: float = 0.0) -> Despun:

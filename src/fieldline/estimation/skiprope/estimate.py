@@ -50,6 +50,7 @@ class Settings(NamedTuple):
     """What a method is told besides the signals."""
 
     frequency_hz: float  # first
+    resolution_hz: float  # to which it is known
     pendulous_hz: tuple[float, ...]
     damping: float
     memory_s: float | None
@@ -110,7 +111,9 @@ def estimate_skiprope(
     found = found._replace(cone=line, others=tuple(other for other in found.lines if other is not line))
     if line is None:
         return _nothing(method, length, found, signals)
-    settings = Settings(line.frequency_hz, _pendulous(found, line), damping, memory_s, rule, knowledge, measured)
+    settings = Settings(
+        line.frequency_hz, found.resolution_hz, _pendulous(found, line), damping, memory_s, rule, knowledge, measured
+    )
     rows = _rows(signals, line.frequency_hz, step_s)
     track = TRACKS[method](turned if method == "bandpass" else coarse, rows, settings)
     deviation = (MEASURED_YAW_STD_RAD if measured else YAW_STD_RAD) if yaw_std_rad is None else float(yaw_std_rad)

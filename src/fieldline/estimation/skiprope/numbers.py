@@ -96,7 +96,7 @@ def derived(phasor, covariance, sense, yaw_rad, yaw_std_rad, tether_length_m: fl
     spreads = np.ascontiguousarray(covariance, dtype=float)
     yaws, yaw_stds = (np.ascontiguousarray(x, dtype=float) for x in (yaw_rad, yaw_std_rad))
     cone_rows(parts, spreads, np.ascontiguousarray(sense, dtype=np.int64), yaws, yaw_stds, float(tether_length_m), out)
-    columns = dict(zip(NUMBERS, out.T.copy(), strict=True))
+    columns: dict[str, np.ndarray] = dict(zip(NUMBERS, out.T.copy(), strict=True))
     columns["position_m"] = np.stack([columns.pop("u_m"), columns.pop("v_m")], axis=1)
     uu, uv, vv = (columns.pop(name) for name in ("u_variance_m2", "uv_covariance_m2", "v_variance_m2"))
     columns["position_covariance_m2"] = np.stack([np.stack([uu, uv], axis=1), np.stack([uv, vv], axis=1)], axis=1)
