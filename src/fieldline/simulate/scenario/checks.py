@@ -122,13 +122,13 @@ def reeled(scenario, body) -> list:
     return [line for line in scenario.line if line.to_body == body.name and line.reel is not None]
 
 
-def sliding(scenario, body) -> list:
 def commanded(scenario, body) -> list:
     """Lines whose current a body's flight software commands."""
     mine = [line.circuit for line in scenario.line if line.to_body == body.name]
     return [circuit for circuit in mine if circuit is not None and circuit.commanded]
 
 
+def sliding(scenario, body) -> list:
     """Sliders of the attachments on a body."""
     ends = [(line, one) for line in scenario.line for one in line.slider]
     return [one for line, one in ends if getattr(line, f"{one.end}_body") == body.name]
@@ -168,23 +168,23 @@ def _models(scenario) -> Found:
             yield f"body[{k}].drag", 'needs air: give [environment.atmosphere] with model = "exponential", "layered" or "msis"'
         if body.onboard is not None:
             yield from _field_of(f"body[{k}].onboard.field", body.onboard, scenario.time)
-    model = scenario.environment.field_model()
     for k, line in enumerate(scenario.line):
         if line.circuit is not None and collects(line.circuit) and scenario.environment.plasma.model == "none":
             yield (
                 f"line[{k}].circuit",
                 'collects electrons: give [environment.plasma] with model = "chapman", "constant" or "table"',
             )
+    model = scenario.environment.field_model()
     if model is not None:
         yield from _year("time.start_utc", model, scenario.time)
 
 
-def _field_of(path: str, onboard, span) -> Found:
 def collects(circuit) -> bool:
     """Whether a circuit takes electrons from the plasma by itself."""
     return circuit.mode == "bare" or any(circuit.collector_radius_m)
 
 
+def _field_of(path: str, onboard, span) -> Found:
     """The model on board exists and knows the year."""
     from fieldline.environment.field_registry import field_model
 
