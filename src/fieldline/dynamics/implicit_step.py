@@ -22,7 +22,7 @@ its own cubic; the velocity is the derivative of that. The accelerations of a st
 from __future__ import annotations
 
 from fieldline.compiled import inner
-from fieldline.dynamics.layout import feeds_at, nodes_at, three
+from fieldline.dynamics.layout import feeds_at, nodes_at, temperatures_at, three
 from fieldline.dynamics.lines.stiff_system import enter_system, solve
 from fieldline.dynamics.lines.turning_axes import enter_all, fall, leave_all, move_axes, open_axes, turn_all_rates
 from fieldline.dynamics.parameters import TANGENT
@@ -41,7 +41,8 @@ def attempt_implicit(t, h, y, plant, inputs, loads, call, shared, work):
     """Stages (1) of a step of length h from state y, its end in work.z1; 0 or what a user's load did wrong."""
     implicit, gm = work.implicit, plant.surroundings.gravity.gm
     method, axes, system = implicit.method, implicit.axes, implicit.system
-    s = method.gamma * h
+    lines, bodies, s = plant.lines, plant.bodies, method.gamma * h
+    at = (nodes_at(plant), feeds_at(plant), temperatures_at(plant))
     lift(y, work.start, work.z)
     work.k[:, :] = 0.0  # numbers of nodes that are not out are not written
     status = plant_rates(t, work.z, work.start, plant, inputs, work.frozen, loads, call, shared, work.log, work.k[OPENING])
@@ -49,29 +50,29 @@ def attempt_implicit(t, h, y, plant, inputs, loads, call, shared, work):
         return status
     open_axes(t, work.z, work.start, plant, inputs, axes)
     move_axes(0.0, gm, axes)
-    enter_all(work.z, plant, axes, implicit.opening)
-    enter_system(t, s, work.z, work.start, plant, inputs, shared, axes, system)
-    turn_all_rates(implicit.opening, work.k[OPENING], plant, axes, implicit.rate)
-    solve(s, implicit.rate, work.z, work.start, plant, shared, axes, system, work.k[0])
+    enter_all(work.z, at[0], lines, axes, implicit.opening)
+    enter_system(s, work.z, work.start, at, lines, bodies, shared.tension, shared.end_mass, axes, system)
+    turn_all_rates(implicit.opening, work.k[OPENING], at[0], lines, axes, implicit.rate)
+    solve(s, implicit.rate, work.z, work.start, at, lines, bodies, axes, system, work.k[0])
     for i in range(1, STAGES):
         later = method.nodes[i] * h
         sum_stages(implicit.opening, work.k, method.a[i], i, implicit.inside)
         move_axes(later, gm, axes)
-        leave_all(implicit.inside, plant, axes, work.stage)
+        leave_all(implicit.inside, at[0], lines, axes, work.stage)
         status = plant_rates(
             t + later, work.stage, work.start, plant, inputs, work.frozen, loads, call, shared, work.log, work.k[i]
         )
         if status != 0:
             return status
-        turn_all_rates(implicit.inside, work.k[i], plant, axes, implicit.rate)
+        turn_all_rates(implicit.inside, work.k[i], at[0], lines, axes, implicit.rate)
         for j in range(i):
             w = method.c[i, j] / h
             for n in range(implicit.rate.shape[0]):
                 implicit.rate[n] += w * work.k[j, n]
-        solve(s, implicit.rate, work.z, work.start, plant, shared, axes, system, work.k[i])
+        solve(s, implicit.rate, work.z, work.start, at, lines, bodies, axes, system, work.k[i])
     sum_stages(implicit.opening, work.k, method.m, STAGES, implicit.inside)
     move_axes(h, gm, axes)
-    leave_all(implicit.inside, plant, axes, work.z1)
+    leave_all(implicit.inside, at[0], lines, axes, work.z1)
     return 0
 
 

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.compiled import inner
-from fieldline.dynamics.layout import nodes_at, store, three
+from fieldline.dynamics.layout import store, three
 from fieldline.dynamics.lines.chain import attachment, line_end
 from fieldline.dynamics.parameters import TANGENT, Lines
 from fieldline.frames.matrices import IDENTITY, inverse, matadd, matmul, matscale, matvec, skew, transpose
@@ -43,6 +43,7 @@ class Axes(NamedTuple):
     now: np.ndarray  # (groups, 18) R, c, c', c''
     sums: np.ndarray  # (groups, 13) of equation (3): the matrix, the right-hand side, and the mass
     attached: np.ndarray  # (lines, 12) place and velocity of A's attachment, of B's, inertial axes, at the step's start
+    point: np.ndarray  # (lines, 6) the attachments in the bodies, body axes
 
 
 def new_axes(bodies: int, lines: Lines) -> Axes:
@@ -58,6 +59,7 @@ def new_axes(bodies: int, lines: Lines) -> Axes:
         now=np.zeros((groups, 18)),
         sums=np.zeros((groups, 13)),
         attached=np.zeros((len(lines.nodes), 12)),
+        point=np.zeros((len(lines.nodes), 6)),
     )
 
 
@@ -126,8 +128,10 @@ def gather_chord(t, k, z, start, plant, inputs, axes):
     """A line's attachments, and its part of the sums of (3)."""
     a, b = plant.lines.body[k, 0], plant.lines.body[k, 1]
     point, rate = attachment(t, k, 0, plant, inputs)
+    store(axes.point[k], 0, point)
     place_a, speed_a, _ = line_end(z, start, a, point, rate)
     point, rate = attachment(t, k, 1, plant, inputs)
+    store(axes.point[k], 3, point)
     place_b, speed_b, _ = line_end(z, start, b, point, rate)
     store(axes.attached[k], 0, place_a)
     store(axes.attached[k], 3, speed_a)
@@ -195,37 +199,37 @@ def turn_rates(z, rate, at, g, axes, out):
 
 
 @inner
-def enter_all(z, plant, axes, out):
-    """Everything of z in turning axes; what neither falls nor turns as it is."""
+def enter_all(z, base, lines, axes, out):
+    """Everything of z in turning axes, nodes from `base` on; what neither falls nor turns as it is."""
     for j in range(z.shape[0]):
         out[j] = z[j]
-    for b in range(plant.bodies.mass.shape[0]):
+    for b in range(axes.group.shape[0]):
         enter(z, TANGENT * b, axes.group[b], axes, out)
-    for k in range(plant.lines.nodes.shape[0]):
-        for i in range(plant.lines.nodes[k]):
-            enter(z, nodes_at(plant) + 6 * (plant.lines.first[k] + i), axes.group[plant.lines.body[k, 0]], axes, out)
+    for k in range(lines.nodes.shape[0]):
+        for i in range(lines.nodes[k]):
+            enter(z, base + 6 * (lines.first[k] + i), axes.group[lines.body[k, 0]], axes, out)
 
 
 @inner
-def leave_all(z, plant, axes, out):
+def leave_all(z, base, lines, axes, out):
     """The stepper's z of what is given in turning axes."""
     for j in range(z.shape[0]):
         out[j] = z[j]
-    for b in range(plant.bodies.mass.shape[0]):
+    for b in range(axes.group.shape[0]):
         leave(z, TANGENT * b, axes.group[b], axes, out)
-    for k in range(plant.lines.nodes.shape[0]):
-        for i in range(plant.lines.nodes[k]):
-            leave(z, nodes_at(plant) + 6 * (plant.lines.first[k] + i), axes.group[plant.lines.body[k, 0]], axes, out)
+    for k in range(lines.nodes.shape[0]):
+        for i in range(lines.nodes[k]):
+            leave(z, base + 6 * (lines.first[k] + i), axes.group[lines.body[k, 0]], axes, out)
 
 
 @inner
-def turn_all_rates(z, rate, plant, axes, out):
+def turn_all_rates(z, rate, base, lines, axes, out):
     """Rates in turning axes, of everything, into out."""
     for j in range(z.shape[0]):
         out[j] = rate[j]
-    for b in range(plant.bodies.mass.shape[0]):
+    for b in range(axes.group.shape[0]):
         turn_rates(z, rate, TANGENT * b, axes.group[b], axes, out)
-    for k in range(plant.lines.nodes.shape[0]):
-        for i in range(plant.lines.nodes[k]):
-            at = nodes_at(plant) + 6 * (plant.lines.first[k] + i)
-            turn_rates(z, rate, at, axes.group[plant.lines.body[k, 0]], axes, out)
+    for k in range(lines.nodes.shape[0]):
+        for i in range(lines.nodes[k]):
+            at = base + 6 * (lines.first[k] + i)
+            turn_rates(z, rate, at, axes.group[lines.body[k, 0]], axes, out)
