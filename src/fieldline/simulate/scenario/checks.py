@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from fieldline.errors import InputError, nearest
 from fieldline.simulate.scenario.coarseness import too_coarse
+from fieldline.simulate.scenario.line_stiffness import too_stiff
 
 MOST_SAMPLES = 50_000_000
 NEEDS = {"dipole": "magnetorquer", "wheel_torque": "wheel", "thrust": "thruster"}
@@ -215,3 +216,8 @@ def _lengths(scenario) -> Found:
         coarse = too_coarse(scenario, body)
         if coarse:
             yield "integrator.step_s", f"{coarse} (body[{k}])"
+    known = {body.name for body in scenario.body}
+    for k, line in enumerate(scenario.line):
+        stiff = too_stiff(scenario, k) if {line.from_body, line.to_body} <= known else None
+        if stiff:
+            yield f"line[{k}]", stiff
