@@ -145,12 +145,12 @@ def thrust_picture(record: RunRecord, b: int) -> Picture | None:
     for k, name in enumerate(names):
         stroke(axes[0, 0], record, thrust[:, k], k, name.partition(".")[2], width=0.8)
     axes[0, 0].set_ylim(-0.05, 1.05)
-    finish(axes[0, 0], record, "thrust over full thrust", "")
+    finish(axes[0, 0], record, "part of the control period with full thrust", "")
     axes[0, 0].set_xlabel(record.clock.label)
     return Picture(
         record.tag("thrusters", b),
         record.of_body("Thrusters", b),
-        "Thrusters fire for part of a control period; what shows is what they did at the outputs.",
+        "Thrusters fire at full thrust for part of each control period; what shows is that part, as commanded.",
         f"Thrust of {len(names)} thrusters over time.",
         figure,
     )

@@ -25,7 +25,7 @@ AXES = ["x", "y", "z"]
 ACTUATORS = (
     ("magnetorquer", "torquer_moment", "A m2", "dipole of each torquer along its axis"),
     ("wheel", "wheel_torque", "N m", "motor torque on each wheel, as commanded"),
-    ("thruster", "thrust", "1", "thrust over full thrust"),
+    ("thruster", "thrust", "1", "part of the control period in which each thruster is told to fire"),
     ("conductor", "conductor_current", "A", "current of each conductor"),
     ("circuit", "circuit_command", "1", "what the circuit of each line is told"),
     ("reel", "reel_command", "1", "what each reel is told: rate [m/s] or tension [N]"),

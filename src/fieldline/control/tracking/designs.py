@@ -13,6 +13,7 @@ from fieldline.control.periodic_system import held_gains, held_problem, held_ste
 from fieldline.control.tracking.by_instant import tracking_frozen
 from fieldline.control.tracking.by_loads import tracking_allocated, tracking_periodic
 from fieldline.control.tracking.by_prediction import MOST_CONTROLS, MOST_STAGES, PLAN_MEMORY, tracking_predictive
+from fieldline.control.tracking.orbit_change import LAWS as ORBIT_LAWS
 from fieldline.control.tracking.settings import COMMON, WEIGHTS, Known, known_of, scale_of, state_weights
 from fieldline.control.tracking.tracking_loop import MEMORY
 from fieldline.errors import InputError, NoEstimateError
@@ -248,4 +249,5 @@ LAWS = (
         "beside a target, the best plan for the hour ahead",
         _pack_predictive,
     ),
+    *ORBIT_LAWS,
 )

@@ -88,7 +88,7 @@ def write_actuators(t, row, run):
         elif k < ends[WHEEL]:
             row[k] = inputs.wheel_torque[one]
         elif k < ends[THRUST]:
-            row[k] = inputs.thrust[one]
+            row[k] = run.actuators.wanted[k]
         elif k < ends[CONDUCTOR]:
             row[k] = inputs.current[one]
         elif k < ends[CIRCUIT]:

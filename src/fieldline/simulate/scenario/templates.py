@@ -18,6 +18,12 @@ TEMPLATES = {
     "observatory": "an observatory held on a star for a day",
     "pair": "two bodies on a line",
     "tumble": "a free tumble with a magnetometer, for telemetry",
+    "standoff": "a tank with towers stands beside a target by currents in its towers",
+    "r-bar": "the same from above, slowly",
+    "v-bar": "the same from ahead, along the track",
+    "z-bar": "the same from the side, by prediction",
+    "docking": "a small satellite with booms docks by currents",
+    "boom-attitude": "its attitude alone, by currents",
 }
 
 
