@@ -110,7 +110,7 @@ def disturbed(seed, feed, line=ROPE, point=False):
 def test_a_node_appears_in_the_plant(rest, point):
     for seed in range(5):
         flight = disturbed(seed, 150.0, ROPE | {"rest_length_m": rest}, point)
-        nodes, feeds, _ = starts_in_state(flight.plant)
+        _, feeds, _ = starts_in_state(flight.plant)
         flight.y[feeds] = 151.0
         pf.rates(flight)
         before, out = Account(flight), int(flight.plant.lines.nodes[0])
