@@ -12,7 +12,7 @@ ORIGIN_M = 6_878_136.6
 GM = EARTH_GM_M3_S2
 
 
-@njit
+@njit(cache=True)
 def laboratory(t, state, parameters):
     """On nodes: a uniform gravity (3) [m/s^2] in place of the Earth's, and a drag [1/s] against the velocity."""
     out = np.zeros(6)
@@ -22,7 +22,7 @@ def laboratory(t, state, parameters):
     return out
 
 
-@njit
+@njit(cache=True)
 def laboratory_body(t, state, parameters):
     """On a body: mass with its half segments [kg], gravity (3) [m/s^2], acceleration (3) [m/s^2] times cos(rate t), rate."""
     out = np.zeros(6)

@@ -20,7 +20,7 @@ STRAIN, BOW_X, BOW_Y, STRETCH, SHIFT = 0.05, 4.0, 2.0, 0.5, 3.0
 W1, W2, W3, W4 = 1.1, 1.7, 2.3, 0.9
 
 
-@njit
+@njit(cache=True)
 def motion(s, t):
     """(9, 3) of (1): r from O, r_s, r_t, r_ss, r_st, r_tt, r_sst; rows 7 and 8 are not used."""
     k = pi / LENGTH
@@ -47,7 +47,7 @@ def motion(s, t):
     return out
 
 
-@njit
+@njit(cache=True)
 def pull_gradient(s, t):
     """(3,) (T r_s / |r_s|)_s [N/m] of equation (2)."""
     m = motion(s, t)
@@ -59,7 +59,7 @@ def pull_gradient(s, t):
     return gradient / long * q + tension * (bend / long - long_s / long**2 * q)
 
 
-@njit
+@njit(cache=True)
 def segment_pull(s0, s1, t):
     """(3,) [N] of a straight segment between two material places."""
     a, b = motion(s0, t), motion(s1, t)
@@ -69,7 +69,7 @@ def segment_pull(s0, s1, t):
     return tension / long * chord
 
 
-@njit
+@njit(cache=True)
 def weightless(out, state):
     """Add what takes the Earth's gravity off a node."""
     r3 = sqrt(state[0] ** 2 + state[1] ** 2 + state[2] ** 2) ** 3
@@ -77,7 +77,7 @@ def weightless(out, state):
         out[j] += state[7] * GM * state[j] / r3
 
 
-@njit
+@njit(cache=True)
 def of_continuum(t, state, parameters):
     """On nodes: equation (2) times the length of their mass."""
     out = np.zeros(6)
@@ -87,7 +87,7 @@ def of_continuum(t, state, parameters):
     return out
 
 
-@njit
+@njit(cache=True)
 def of_chain(t, state, parameters):
     """On nodes a distance p apart: what makes (1) exact for straight segments."""
     out = np.zeros(6)

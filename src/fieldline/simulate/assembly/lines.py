@@ -143,7 +143,7 @@ def _materials(line) -> dict[str, np.ndarray]:
         if rule == "mean":
             found[key] = share @ values
         else:
-            with np.errstate(divide="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore"):
                 compliance = np.where(share > 0.0, share / values, 0.0).sum(axis=1)
                 found[key] = 1.0 / compliance
     return found
