@@ -1,12 +1,13 @@
-"""Bodies that hang on lines at the start: places and velocities at the ends of a taut line at rest, or swinging as a rod.
+"""Bodies that hang on lines at the start: places and velocities at the ends of taut lines at rest, or of one that swings.
 
-The state of rest of a line between two masses turns about the Earth at one rate (`fieldline.analysis.tether.starts`). The
-upper or the lower body, whichever has the orbit, keeps its place; where `balanced`, its velocity changes by the difference
-between that rate of turn and its own circular orbit, so that what it had beyond a circular orbit it keeps:
+Two bodies on a line may swing as a rod (`fieldline.analysis.tether.starts`). More of them hang at rest on the vertical through
+the first, which all turn about the Earth at one rate (`fieldline.simulate.assembly.rest_state`). The body from which the others
+hang keeps its place; where `balanced`, its velocity changes by the difference between that turn and its own circular orbit,
+so that what it had beyond a circular orbit it keeps:
 
-    v_A = v_A,given + v_A,rest - sqrt(GM / r_A) t,    v_B = v_A + (v_B - v_A)_rest                           (1)
+    v_A = v_A,given + (w r_A - sqrt(GM / r_A)) t,    v_B = v_A + (v_B - v_A)_rest                             (1)
 
-t: unit vector along the track. What hangs beyond B counts as mass at B.
+t: unit vector along the track, w: rate of the turn.
 """
 
 from __future__ import annotations
@@ -18,71 +19,83 @@ from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.dynamics.parameters import STATE
 from fieldline.errors import InputError
 from fieldline.simulate.assembly.line_ends import attachment_point
-from fieldline.simulate.assembly.lines import line_names, mass_out, strand_of
+from fieldline.simulate.assembly.lines import line_names, strand_of
+from fieldline.simulate.assembly.rest_state import rest_of
+from fieldline.simulate.scenario.checks import carrying_lines
 
 
 def line_of(scenario, body) -> int:
     """The line on which a body hangs."""
     if body.hang.line:
         return line_names(scenario).index(body.hang.line)
-    return next(k for k, line in enumerate(scenario.line) if body.name in (line.from_body, line.to_body))
+    return carrying_lines(scenario, body)[0]
 
 
-def other_end(line, body) -> str:
-    """Name of the body at the line's other end."""
-    return line.to_body if line.from_body == body.name else line.from_body
+def carrier_of(scenario, body):
+    """The body at the other end of the line on which a body hangs."""
+    line = scenario.line[line_of(scenario, body)]
+    return scenario.body[scenario.index_of(line.to_body if line.from_body == body.name else line.from_body)]
 
 
 def hung(scenario, body, states) -> tuple[np.ndarray, np.ndarray]:
     """(position_i, velocity_i) of a body's attachment, levers left out, from the states of the bodies before it."""
-    line = scenario.line[line_of(scenario, body)]
-    position, velocity = states[scenario.index_of(other_end(line, body))]
-    state = _rod(scenario, body, position, velocity)
+    position, velocity = states[scenario.index_of(carrier_of(scenario, body).name)]
+    state = _taut(scenario, body, position, velocity)
     return state.position_i[-1], velocity + state.velocity_i[-1] - state.velocity_i[0]
 
 
 def hang_bodies(scenario, y: np.ndarray) -> dict[int, object]:
     """Put hanging bodies, whose attitudes and rates are in y, where their lines are taut; states of their lines by number."""
-    states = {}
+    states, balanced = {}, set()
     for b, body in enumerate(scenario.body):
         if body.hang is None:
             continue
         k = line_of(scenario, body)
-        line = scenario.line[k]
-        a = scenario.index_of(other_end(line, body))
-        mine = "from" if line.from_body == body.name else "to"
-        row_a, row_b = (y[STATE * n : STATE * (n + 1)] for n in (a, b))
-        lever_a, swing_a = _lever(scenario, k, "to" if mine == "from" else "from", row_a)
-        state = _rod(scenario, body, row_a[:3] + lever_a, row_a[3:6])
-        if body.hang.balanced:
+        carrier = carrier_of(scenario, body)
+        mine, far = ("from", "to") if scenario.line[k].from_body == body.name else ("to", "from")
+        row_a, row_b = y[_row(scenario.index_of(carrier.name))], y[_row(b)]
+        lever_a, swing_a = _lever(scenario, k, far, row_a)
+        state = _taut(scenario, body, row_a[:3] + lever_a, row_a[3:6])
+        if body.hang.balanced and carrier.hang is None and carrier.name not in balanced:
             row_a[3:6] += _balance(state, row_a)
+            balanced.add(carrier.name)
         speeds = row_a[3:6] + swing_a + state.velocity_i - state.velocity_i[0]
         lever_b, swing_b = _lever(scenario, k, mine, row_b)
-        row_b[:3] = state.position_i[-1] - lever_b
-        row_b[3:6] = speeds[-1] - swing_b
+        row_b[:3], row_b[3:6] = state.position_i[-1] - lever_b, speeds[-1] - swing_b
         moved = state._replace(velocity_i=speeds)
         states[k] = moved if mine == "to" else type(moved)(*(part[::-1] for part in moved))
     return states
 
 
-def _rod(scenario, body, position_i, velocity_i):
-    """The taut line from the other body's attachment to this one's."""
+def _row(b: int) -> slice:
+    """A body's numbers in the state."""
+    return slice(STATE * b, STATE * (b + 1))
+
+
+def _taut(scenario, body, position_i, velocity_i):
+    """The taut line from the carrier's attachment to this body's."""
     from fieldline.analysis.tether import librating
 
-    k = line_of(scenario, body)
-    line = scenario.line[k]
-    strand = strand_of(line)
-    if line.to_body != body.name:
-        strand = type(strand)(*(part[::-1].copy() for part in strand))
-    other = scenario.body[scenario.index_of(other_end(line, body))]
-    hang = body.hang
+    hang, k = body.hang, line_of(scenario, body)
+    swings = any((hang.in_plane_deg, hang.out_of_plane_deg, hang.in_plane_rate_deg_s, hang.out_of_plane_rate_deg_s))
+    alone = sum(one.hang is not None for one in scenario.body) == 1
+    where = f'body "{body.name}", hanging on line "{line_names(scenario)[k]}"'
+    if swings and not alone:
+        raise InputError(
+            f"{where}: only two bodies can start swinging as a rod, and more of them hang here. Leave its angles and rates out."
+        )
     try:
+        if not alone:
+            return rest_of(scenario, body, position_i, velocity_i, line_of, carrier_of)
+        strand = strand_of(scenario.line[k])
+        if scenario.line[k].to_body != body.name:
+            strand = type(strand)(*(part[::-1].copy() for part in strand))
         return librating(
             position_i,
             velocity_i,
             strand,
-            other.mass_kg,
-            _mass_beyond(scenario, body),
+            carrier_of(scenario, body).mass_kg,
+            body.mass_kg,
             upward=hang.upward,
             in_plane_rad=np.radians(hang.in_plane_deg),
             across_rad=np.radians(hang.out_of_plane_deg),
@@ -90,28 +103,16 @@ def _rod(scenario, body, position_i, velocity_i):
             across_rate_rad_s=np.radians(hang.out_of_plane_rate_deg_s),
         )
     except InputError as error:
-        raise InputError(f'body "{body.name}", hanging on line "{line_names(scenario)[k]}": {error}') from None
-
-
-def _mass_beyond(scenario, body) -> float:
-    """Mass of a body and of what hangs from it [kg]."""
-    total = body.mass_kg
-    for other in scenario.body:
-        if other.hang is not None:
-            line = scenario.line[line_of(scenario, other)]
-            if other_end(line, other) == body.name:
-                total += mass_out(line) + _mass_beyond(scenario, other)
-    return total
+        raise InputError(f"{where}: {error}") from None
 
 
 def _balance(state, row_a: np.ndarray) -> np.ndarray:
-    """Equation (1): what the other body's velocity gains (3,) [m/s]."""
+    """Equation (1): what the carrier's velocity gains (3,) [m/s]."""
     position, velocity = row_a[:3], row_a[3:6]
     radius = float(np.linalg.norm(position))
-    normal = np.cross(position, velocity)
-    track = np.cross(normal, position)
-    rest = np.cross(state.velocity_i[0], state.position_i[0])  # the rod's turn, -w r^2
-    rate = float(np.linalg.norm(rest)) / float(state.position_i[0] @ state.position_i[0])
+    track = np.cross(np.cross(position, velocity), position)
+    turn = np.cross(state.position_i[0], state.velocity_i[0])
+    rate = float(np.linalg.norm(turn)) / float(state.position_i[0] @ state.position_i[0])
     return (rate * radius - np.sqrt(EARTH_GM_M3_S2 / radius)) * track / np.linalg.norm(track)
 
 

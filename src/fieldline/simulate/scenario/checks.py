@@ -46,20 +46,32 @@ def _starts(scenario) -> Found:
 def _hangs(scenario, k: int, body) -> Found:
     """A body hangs on one line, whose other end is on an earlier body."""
     names = [line.name or f"line_{j}" for j, line in enumerate(scenario.line, start=1)]
-    mine = [j for j, line in enumerate(scenario.line) if body.name in (line.from_body, line.to_body)]
     if body.hang.line and body.hang.line not in names:
         yield f"body[{k}].hang.line", f'names no [[line]]: "{body.hang.line[:40]}"; {nearest(body.hang.line, names)}'
         return
-    chosen = [names.index(body.hang.line)] if body.hang.line else mine
-    if len(chosen) != 1 or chosen[0] not in mine:
-        ends = ", ".join(names[j] for j in mine) or "none"
-        yield f"body[{k}].hang.line", f"must be a line that ends on this body: {ends}"
-        return
-    line = scenario.line[chosen[0]]
-    other = line.to_body if line.from_body == body.name else line.from_body
-    known = [one.name for one in scenario.body[:k]]
-    if other not in known:
-        yield f"body[{k}].hang", f'hangs from "{other[:40]}", which must come before it among the bodies'
+    carrying = [names[j] for j in carrying_lines(scenario, body)]
+    if not carrying or (body.hang.line and body.hang.line not in carrying):
+        yield (
+            f"body[{k}].hang",
+            f'needs a line from "{body.name}" to a body before it in the file; such lines: {_listed(carrying)}',
+        )
+    elif not body.hang.line and len(carrying) > 1:
+        yield f"body[{k}].hang.line", f"is missing: which of {_listed(carrying)}?"
+
+
+def _listed(names: list[str]) -> str:
+    """Names, or none."""
+    return ", ".join(names)[:80] or "none"
+
+
+def carrying_lines(scenario, body) -> list[int]:
+    """Lines between a body and one before it in the file."""
+    names = [one.name for one in scenario.body]
+    before = set(names[: names.index(body.name)])
+    ends = [(line.from_body, line.to_body) for line in scenario.line]
+    return [
+        k for k, (one, two) in enumerate(ends) if (one == body.name and two in before) or (two == body.name and one in before)
+    ]
 
 
 def _names(scenario) -> Found:
