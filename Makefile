@@ -59,10 +59,14 @@ kernels-plain: $(VENV)/made-test
 	@NUMBA_DISABLE_JIT=1 $(PYTEST) -m "kernels and not slow"
 
 kernels-bounds: $(VENV)/made-test
+	@echo "compiling the plant with bounds checks"
+	@NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=$(BOUNDS_CACHE) $(BIN)/python tests/support/compile_once.py
 	@echo "kernels' tests, bounds checked"
 	@NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=$(BOUNDS_CACHE) $(PYTEST) -m "kernels and not slow"
 
 suite: $(VENV)/made-test
+	@echo "compiling the plant, a minute or two where it is not in the cache"
+	@$(BIN)/python tests/support/compile_once.py
 	@echo "the whole suite"
 	@$(PYTEST)
 
