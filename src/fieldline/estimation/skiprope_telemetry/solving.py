@@ -15,7 +15,7 @@ from fieldline.errors import InputError, NoEstimateError, nearest
 from fieldline.estimation.calibrate import calibrate_against, columns_for
 from fieldline.estimation.calibration import Calibration
 from fieldline.estimation.reference import Reference, reference_along_orbit
-from fieldline.estimation.skiprope.rotary import FEWEST_PERIODS
+from fieldline.estimation.skiprope.rotary import FEWEST_PERIODS, LEAST_TURNING, detect
 from fieldline.estimation.skiprope.signals import ORBITAL_FROM_CONE, SkipropeSignals, skiprope_signals
 from fieldline.estimation.skiprope.solution import SkipropeEstimate
 from fieldline.estimation.skiprope_telemetry.mounting import Mounting
@@ -29,6 +29,8 @@ LENGTH_M = (1.0, 1e6)
 FREQUENCY_HZ = (1e-5, 10.0)
 FASTEST_AVERAGED_HZ = 0.06  # a quicker cone keeps all of its samples
 FEWEST = 30
+BELOW_HZ = (0.0009, 0.0022)
+WORTH_A_HINT_RAD = np.radians(0.1)
 SLOW_HZ = 0.003  # what a record should show: the skiprope of a tether of 20 km is above
 LARGEST_MISFIT_DEG = 30.0  # between measured and known direction, in the median
 LARGEST_SHARE = 0.3  # of the field's size
@@ -135,6 +137,8 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
         method=settings.method,
         yaw_rad=np.zeros(len(signals.seconds)) if yaw_used else None,  # the measured one is taken out already
     )
+    if settings.frequency_hz is None and not estimate.detected:
+        remarks += _below_the_band(signals)
     plane = plane_of(settings.plane)
     crossings = next_crossings(estimate, signals, plane, settings.mounting.half_turn_rad)
     report(settings.method, 1, 1, f"{len(estimate.seconds)} rows" if estimate.detected else "nothing found")
@@ -193,6 +197,20 @@ def _judge_length(span_s: float, frequency_hz: float | None) -> tuple[str, ...]:
     if slowest_hz <= SLOW_HZ:
         return ()
     return (f"The record holds {span_s:.0f} s: a skiprope slower than {1e3 * slowest_hz:.3g} mHz would not be seen in it.",)
+
+
+def _below_the_band(signals: SkipropeSignals) -> tuple[str, ...]:
+    """A hint at what turns slower than the band that is searched, where slow errors of the known field may look like it."""
+    try:
+        line = detect(signals, band_hz=BELOW_HZ).cone
+    except NoEstimateError:
+        return ()
+    if line is None or line.amplitude_rad < WORTH_A_HINT_RAD or abs(line.turning) < LEAST_TURNING:
+        return ()
+    return (
+        f"Something turns at {1e3 * line.frequency_hz:.3g} mHz with {np.degrees(line.amplitude_rad):.2g} deg, below the band that "
+        f"is searched: a slow error of the field, or a long tether. If it skips there, say --frequency-hz {line.frequency_hz:.2g}.",
+    )
 
 
 def _judge_size(measured: np.ndarray, known: np.ndarray) -> tuple[str, ...]:
