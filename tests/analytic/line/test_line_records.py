@@ -1,0 +1,94 @@
+"""Records of heat, circuit and plasma: what they refuse, and in which words."""
+
+import pytest
+
+from fieldline.errors import InputError
+from fieldline.simulate.scenario import Scenario
+from fieldline.simulate.scenario.plasma import Plasma
+from fieldline.vehicle import LineCircuit, LineHeat
+
+WIRE = {"resistance_ohm_per_m": 0.1}
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"mode": "profile"}, "current_a is needed"),
+        ({"mode": "profile", "current_a": 1.0, "commanded": True}, "one of them"),
+        ({"mode": "profile", "times_s": [0.0, 1.0], "currents_a": [1.0]}, "as many numbers as times_s"),
+        ({"mode": "profile", "times_s": [1.0, 0.0], "currents_a": [1.0, 2.0]}, "must rise"),
+        ({"mode": "profile", "current_a": 1.0, "fractions": [0.0, 2.0], "shares": [1.0, 1.0]}, "within 0 and 1"),
+        ({"mode": "profile", "current_a": 1.0, "load_ohm": 3.0}, 'load_ohm has no meaning for mode = "profile"'),
+        ({"mode": "series"}, "resistance_ohm_per_m must be more than zero"),
+        ({"mode": "series", **WIRE, "cathode": "to"}, "cathode has no meaning"),
+        ({"mode": "series", **WIRE, "collector_radius_m": [-1.0, 0.0]}, "no negative number"),
+        ({"mode": "bare", **WIRE, "current_a": 1.0}, "current_a has no meaning"),
+        ({"mode": "bare", **WIRE, "cathode_drop_volt": 1.0}, "cathode_drop_v"),
+    ],
+)
+def test_circuits(keys, words):
+    with pytest.raises(InputError) as refused:
+        LineCircuit(**keys)
+    assert words in str(refused.value)
+
+
+def test_heat():
+    with pytest.raises(InputError, match="emissivity"):
+        LineHeat(absorptivity=0.5, specific_heat_j_kg_k=900.0)
+    assert LineHeat(absorptivity=0.5, emissivity=0.8, specific_heat_j_kg_k=900.0).expansion_1_k == 0.0
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"model": "constant"}, "density_m3 is missing"),
+        ({"model": "chapman", "density_m3": 1e11}, "density_m3 has no meaning"),
+        ({"model": "table", "altitudes_km": [300.0], "day_m3": [1e11]}, "two heights"),
+        ({"model": "table", "altitudes_km": [300.0, 200.0], "day_m3": [1e11, 1e11]}, "must rise"),
+    ],
+)
+def test_plasma(keys, words):
+    with pytest.raises(InputError) as refused:
+        Plasma(**keys)
+    assert words in str(refused.value)
+
+
+def scenario(plasma="none", **line):
+    """Two points on a line."""
+    usual = {"from_body": "a", "to_body": "b", "rest_length_m": 100.0, "stiffness_n": 10.0}
+    bodies = [{"name": "a", "kind": "point", "mass_kg": 1.0}]
+    bodies.append({"name": "b", "kind": "point", "mass_kg": 1.0, "offset_o_m": (0.0, 0.0, 100.0)})
+    return Scenario.from_dict(
+        {
+            "time": {"start_utc": "2026-03-01T00:00:00Z", "duration_s": 10.0, "output_step_s": 1.0},
+            "environment": {"plasma": {"model": plasma}},
+            "orbit": {"elements": {"altitude_km": 500.0, "inclination_deg": 51.6}},
+            "integrator": {"step_s": 0.2},
+            "body": bodies,
+            "line": [usual | line],
+        }
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ({"circuit": {"mode": "bare", **WIRE}, "diameter_m": 0.01}, "[environment.plasma]"),
+        ({"circuit": {"mode": "series", **WIRE, "collector_radius_m": [0.0, 1.0]}}, "[environment.plasma]"),
+        ({"circuit": {"mode": "bare", **WIRE}}, "diameter_m"),
+        ({"heat": {"absorptivity": 0.5, "emissivity": 0.5, "specific_heat_j_kg_k": 900.0}}, "mass_per_length_kg_m"),
+    ],
+)
+def test_what_a_line_needs(line, words):
+    with pytest.raises(InputError) as refused:
+        scenario(**line)
+    assert words in str(refused.value)
+
+
+def test_a_law_needs_a_circuit_that_listens():
+    made = scenario("chapman", circuit={"mode": "series", **WIRE}).to_dict()
+    made["software"] = [{"law": "user_functions:ramp", "compiled": False, "commands": ["current"], "rate_hz": 1.0, "body": "b"}]
+    with pytest.raises(InputError, match="point mass, which has nothing to command"):
+        Scenario.from_dict(made)
+    made["line"][0]["circuit"]["commanded"] = True
+    assert Scenario.from_dict(made).line[0].circuit.commanded
