@@ -208,8 +208,9 @@ def _below_the_band(signals: SkipropeSignals) -> tuple[str, ...]:
     if line is None or line.amplitude_rad < WORTH_A_HINT_RAD or abs(line.turning) < LEAST_TURNING:
         return ()
     return (
-        f"Something turns at {1e3 * line.frequency_hz:.3g} mHz with {np.degrees(line.amplitude_rad):.2g} deg, below the band that "
-        f"is searched: a slow error of the field, or a long tether. If it skips there, say --frequency-hz {line.frequency_hz:.2g}.",
+        f"Something turns at {1e3 * line.frequency_hz:.3g} mHz with {np.degrees(line.amplitude_rad):.2g} deg, below the band "
+        f"that is searched: a slow error of the field, or a long tether. If it skips there, say --frequency-hz "
+        f"{line.frequency_hz:.2g}.",
     )
 
 
