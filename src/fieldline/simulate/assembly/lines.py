@@ -111,13 +111,15 @@ def _span(line) -> tuple[float, float]:
 
 
 def strand_of(line) -> Strand:
-    """The segments that are out at the start."""
+    """The segments that are out at the start, as long as their temperature makes them."""
     from fieldline.analysis.tether import Strand
 
     out, materials = nodes_out(line), _materials(line)
     rest = np.full(out + 1, spacing(line))
     rest[-1] = last_length(line)
-    return Strand(rest, materials["stiffness_n"][: out + 1], materials["mass_per_length_kg_m"][: out + 1])
+    heat = line.heat
+    grown = 1.0 if heat is None else 1.0 + heat.expansion_1_k * (heat.start_temperature_k - heat.reference_temperature_k)
+    return Strand(grown * rest, materials["stiffness_n"][: out + 1], materials["mass_per_length_kg_m"][: out + 1] / grown)
 
 
 def _lag(reel) -> float:
