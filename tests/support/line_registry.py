@@ -30,6 +30,7 @@ def apart(length, rate=(0.0, 0.0, 0.0)):
 
 PARTS = [{"length_m": 1.7e3, "stiffness_n": 2e4, "mass_per_length_kg_m": 0.03}, {"length_m": 1e3, "stiffness_n": 2e5}]
 WAVES = {"skiprope_amplitude_m": 60.0, "skiprope_sense": "left-handed", "pulse_amplitude_m": 0.3, "pulse_width_m": 2000.0}
+ROPE = {"skiprope_amplitude_m": 40.0}
 EYES = {"from_point_b_m": (0.3, -0.2, 1.5), "to_point_b_m": (0.1, 0.4, -0.8)}
 
 # name: bodies, lines
@@ -43,16 +44,20 @@ LINES = {
     "slack, then a snap": ([point("a", 900.0), point("b", 100.0, **apart(4980.0, (0.0, 0.0, 0.5)))], [joined("a", "b")]),
     "heavy line": ([point("a", 30.0), point("b", 10.0, hang=SWING)], [joined("a", "b", mass_per_length_kg_m=0.05)]),
     "three in a row": (
-        [point("a", 900.0), point("b", 100.0, hang={"line": "line_1"} | SWING), point("c", 50.0, hang={"line": "line_2"})],
-        [joined("a", "b"), joined("b", "c", rest_length_m=2e3, nodes=3)],
+        [point("a", 900.0), point("b", 100.0, hang={}), point("c", 50.0, hang={})],
+        [joined("a", "b", start=ROPE), joined("b", "c", rest_length_m=2e3, nodes=3)],
     ),
     "two lines at one body": (
+        [point("a", 400.0), point("b", 100.0, hang={}), point("c", 150.0, hang={"upward": True})],
+        [joined("a", "b", start=ROPE), joined("c", "a", nodes=4, start=ROPE | {"skiprope_sense": "plane"})],
+    ),
+    "a triangle": (
         [
             point("a", 400.0),
-            point("b", 100.0, hang={"line": "line_1"} | SWING),
-            point("c", 150.0, hang={"line": "line_2", "upward": True, "in_plane_deg": -15.0}),
+            point("b", 100.0, offset_o_m=(800.0, -300.0, 4940.0)),
+            point("c", 150.0, offset_o_m=(-600.0, 200.0, 4960.0)),
         ],
-        [joined("a", "b"), joined("c", "a", nodes=4)],
+        [joined("a", "b"), joined("a", "c", nodes=4), joined("b", "c", rest_length_m=1500.0, nodes=2)],
     ),
     "levers": ([rigid("a", 900.0), rigid("b", 100.0, hang=SWING)], [joined("a", "b", **EYES)]),
     "levers without nodes": ([rigid("a", 900.0), rigid("b", 100.0, hang=SWING)], [joined("a", "b", nodes=0, **EYES)]),
