@@ -29,7 +29,6 @@ def table(case):
     return {t: (np.array(places), np.array(tension)) for t, (places, tension) in found.items()}
 
 
-@pytest.mark.kernels
 @pytest.mark.parametrize(
     "case, ends, step, metres, newtons",
     [

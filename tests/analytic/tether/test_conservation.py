@@ -10,7 +10,6 @@ from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.dynamics.parameters import TANGENT
 from fieldline.simulate.flight import Flight
 
-pytestmark = pytest.mark.kernels
 # a snap is a kink in the force: rk4 of 0.02 s misses its instant, and leaves that much of the energy of the stretch
 SNAPS = {"slack, then a snap", "waves", "three in a row", "two lines at one body", "a triangle"}
 
@@ -44,6 +43,7 @@ def test_a_smaller_step_finds_the_snap():
     assert left[0] > 2.0 * left[1] > 4.0 * left[2]
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("name", ["nodes", "materials", "three in a row", "a triangle", "heavy line"])
 def test_inner_forces_add_up_to_nothing(name):
     """The sum of m a over bodies and nodes is that of their weights: in a stretched, bent, moving line."""

@@ -15,7 +15,6 @@ import tether_flights as tf
 from fieldline.dynamics.layout import starts_in_state
 from fieldline.simulate.flight import Flight
 
-pytestmark = pytest.mark.kernels
 END_S = 3.0
 
 
@@ -80,6 +79,7 @@ def test_methods_that_choose_their_step_follow_their_tolerance(method, times):
     assert errors[1] < 0.1 * errors[0]
 
 
+@pytest.mark.kernels
 def test_the_chosen_motion_obeys_its_equation():
     """(2) against differences of (1): a slip in the forces would show here, not in the plant."""
     s, t, d = 37.0, 1.3, 1e-3

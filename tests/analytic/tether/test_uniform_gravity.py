@@ -7,7 +7,6 @@ from scipy.special import ellipk, j0, jn_zeros
 
 import tether_flights as tf
 
-pytestmark = pytest.mark.kernels
 G = 9.80665
 
 
