@@ -48,7 +48,7 @@ def attempt_implicit(t, h, y, plant, inputs, loads, call, shared, work):
     status = plant_rates(t, work.z, work.start, plant, inputs, work.frozen, loads, call, shared, work.log, work.k[OPENING])
     if status != 0:
         return status
-    open_axes(t, work.z, work.start, plant, inputs, axes)
+    open_axes(t, work.z, work.start, at, plant, inputs, axes)
     move_axes(0.0, gm, axes)
     enter_all(work.z, at[0], lines, axes, implicit.opening)
     enter_system(s, work.z, work.start, at, lines, bodies, shared.tension, shared.end_mass, axes, system)

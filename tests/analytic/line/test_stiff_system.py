@@ -36,8 +36,8 @@ def solved_dense(matrix, order, column):
 @njit
 def solved_stage(t, s, z, start, plant, inputs, shared, implicit, rate, out):
     """U of a stage for a right-hand side; the axes and the system as at a step's start."""
-    open_axes(t, z, start, plant, inputs, implicit.axes)
     at = (nodes_at(plant), feeds_at(plant), temperatures_at(plant))
+    open_axes(t, z, start, at, plant, inputs, implicit.axes)
     tension, end_mass = shared.tension, shared.end_mass
     enter_system(s, z, start, at, plant.lines, plant.bodies, tension, end_mass, implicit.axes, implicit.system)
     solve(s, rate, z, start, at, plant.lines, plant.bodies, implicit.axes, implicit.system, out)
@@ -45,7 +45,7 @@ def solved_stage(t, s, z, start, plant, inputs, shared, implicit, rate, out):
 
 @njit
 def there_and_back(t, later, z, start, plant, inputs, axes, inside, back, rate, turned):
-    open_axes(t, z, start, plant, inputs, axes)
+    open_axes(t, z, start, (nodes_at(plant), feeds_at(plant)), plant, inputs, axes)
     move_axes(0.0, plant.surroundings.gravity.gm, axes)
     enter_all(z, nodes_at(plant), plant.lines, axes, inside)
     move_axes(later, plant.surroundings.gravity.gm, axes)
@@ -149,18 +149,19 @@ def turning_rates(flight, moved, origin, omega):
     return rate
 
 
+# what is left out: end masses against bodies 5e4 times heavier, and the forces of what streams through a reel
 CASES = {
-    "no damping, turning": ({}, 0.004),
-    "damping": ({"damping_n_s": 900.0}, 0.0),
-    "reel that follows a tension": ({"reel": REEL | {"mode": "tension"}, "damping_n_s": 300.0}, 0.0),
-    "reel that follows a rate": ({"reel": REEL}, 0.0),
+    "no damping, turning": ({}, 0.004, 1e-3),
+    "damping": ({"damping_n_s": 900.0}, 0.0, 1e-3),
+    "reel that follows a tension": ({"reel": REEL | {"mode": "tension"}, "damping_n_s": 300.0}, 0.0, 1e-2),
+    "reel that follows a rate": ({"reel": REEL}, 0.0, 1e-2),
 }
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_system_is_the_jacobian_of_the_plant(case):
     """(1/s - A) U = rate, with A by central differences of the whole right-hand side, at a line that is bent and turns."""
-    more, turning = CASES[case]
+    more, turning, close = CASES[case]
     flight, rng = flight_of(**more)
     plant, y = flight.plant, flight.y
     bodies, (nodes, feeds, _) = len(plant.bodies.mass), starts_in_state(plant)
@@ -196,7 +197,7 @@ def test_the_system_is_the_jacobian_of_the_plant(case):
     error, drive = np.abs(out / s - jacobian @ out - right), np.abs(jacobian @ out)
     bodily = np.arange(TANGENT * bodies).reshape(bodies, 4, 3)
     for rows in (bodily[:, 0], bodily[:, 1], bodily[:, 2], bodily[:, 3], np.arange(TANGENT * bodies, z.size)):
-        assert error[rows].max() < 4e-3 * drive[rows].max()  # what is left out: end masses against the bodies'
+        assert error[rows].max() < close * drive[rows].max()
 
 
 def test_axes_that_turn_leave_nothing_out():

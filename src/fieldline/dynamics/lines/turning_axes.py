@@ -4,8 +4,8 @@
     X' = W,    W' = R^T (r'' - c'') - 2 Omega x W - Omega x (Omega x X)                                     (2)
 
 Nothing is left out: (1) is another way to write r and v, for any Omega and any c(t) of which c'' is known. They are chosen
-so that X and W change little. c(t) is the polynomial of degree 6 in time that the two-body motion of the mass centre of
-the bodies begins with (the series of f and g); its remainder is in (2). Omega is the rate at which the lines' chords
+so that X and W change little. c(t) is the polynomial of degree 5 in time that the two-body motion of the centre of mass
+begins with (the series of f and g); its remainder is in (2). Omega is the rate at which the lines' chords
 d_k, from attachment to attachment, turn on the whole:
 
     Omega = n + delta,   sum (|d|^2 (1 + eps) E - d d^T) delta = sum d x (d' - n x d)                        (3)
@@ -28,7 +28,7 @@ import numpy as np
 from fieldline.compiled import inner
 from fieldline.dynamics.layout import store, three
 from fieldline.dynamics.lines.chain import attachment, line_end
-from fieldline.dynamics.parameters import TANGENT, Lines
+from fieldline.dynamics.parameters import NO_REEL, TANGENT, Lines
 from fieldline.frames.matrices import IDENTITY, inverse, matadd, matmul, matscale, matvec, skew, transpose
 from fieldline.frames.vectors import add, axpy, cross, dot, scale, sub
 
@@ -95,22 +95,22 @@ def fall(r, v, t, gm):
 
 
 @inner
-def open_axes(t, z, start, plant, inputs, axes):
-    """Axes of a step that starts at t from z, by (3)."""
+def open_axes(t, z, start, at, plant, inputs, axes):
+    """Axes of a step that starts at t from z, by (3); at: where nodes and feeds start in z."""
     axes.sums[:, :] = 0.0
     axes.origin[:, :] = 0.0
-    bodies = plant.bodies.mass
-    for b in range(bodies.shape[0]):
-        axes.sums[axes.group[b], 12] += bodies[b]
-    for b in range(bodies.shape[0]):
-        g = axes.group[b]
-        for j in range(6):
-            axes.origin[g, j] += bodies[b] / axes.sums[g, 12] * z[TANGENT * b + j]
+    for b in range(axes.group.shape[0]):
+        weigh(plant.bodies.mass[b], three(z, TANGENT * b), three(z, TANGENT * b + 3), axes.group[b], axes)
+    for k in range(plant.lines.nodes.shape[0]):
+        attach(t, k, z, start, plant, inputs, axes)
+        weigh_line(k, z, at, plant.lines, axes)
     for g in range(axes.origin.shape[0]):
+        for j in range(6):
+            axes.origin[g, j] /= axes.sums[g, 12]
         r, v = three(axes.origin[g], 0), three(axes.origin[g], 3)
         store(axes.origin[g], 6, scale(1.0 / dot(r, r), cross(r, v)))
     for k in range(plant.lines.nodes.shape[0]):
-        gather_chord(t, k, z, start, plant, inputs, axes)
+        gather_chord(k, axes.group[plant.lines.body[k, 0]], axes)
     for g in range(axes.origin.shape[0]):
         sums = axes.sums[g]
         whole = 0.5 * (sums[0] + sums[4] + sums[8])
@@ -124,22 +124,49 @@ def open_axes(t, z, start, plant, inputs, axes):
 
 
 @inner
-def gather_chord(t, k, z, start, plant, inputs, axes):
-    """A line's attachments, and its part of the sums of (3)."""
-    a, b = plant.lines.body[k, 0], plant.lines.body[k, 1]
-    point, rate = attachment(t, k, 0, plant, inputs)
-    store(axes.point[k], 0, point)
-    place_a, speed_a, _ = line_end(z, start, a, point, rate)
-    point, rate = attachment(t, k, 1, plant, inputs)
-    store(axes.point[k], 3, point)
-    place_b, speed_b, _ = line_end(z, start, b, point, rate)
-    store(axes.attached[k], 0, place_a)
-    store(axes.attached[k], 3, speed_a)
-    store(axes.attached[k], 6, place_b)
-    store(axes.attached[k], 9, speed_b)
-    g = axes.group[a]
-    chord = sub(place_b, place_a)
-    moving = sub(sub(speed_b, speed_a), cross(three(axes.origin[g], 6), chord))
+def weigh(mass, place, speed, g, axes):
+    """A mass into the centre of its group."""
+    axes.sums[g, 12] += mass
+    store(axes.origin[g], 0, axpy(mass, place, three(axes.origin[g], 0)))
+    store(axes.origin[g], 3, axpy(mass, speed, three(axes.origin[g], 3)))
+
+
+@inner
+def weigh_line(k, z, at, lines, axes):
+    """The masses of a line into the centre of its group; what has left a reel is missing in its body."""
+    g, row, base = axes.group[lines.body[k, 0]], lines.first[k] + k, at[0] + 6 * lines.first[k]
+    p0, v0 = three(axes.attached[k], 0), three(axes.attached[k], 3)
+    out = 0.0
+    for j in range(lines.nodes[k] + 1):
+        if j < lines.nodes[k]:
+            p1, v1 = three(z, base + 6 * j), three(z, base + 6 * j + 3)
+        else:
+            p1, v1 = three(axes.attached[k], 6), three(axes.attached[k], 9)
+        mass = lines.linear_mass[row + j] * (z[at[1] + 2 * k] if j == lines.nodes[k] else lines.rest[row + j])
+        weigh(mass, scale(0.5, add(p0, p1)), scale(0.5, add(v0, v1)), g, axes)
+        out += mass
+        p0, v0 = p1, v1
+    if lines.reel[k] != NO_REEL:
+        weigh(lines.stored[k] - out, p0, v0, g, axes)
+
+
+@inner
+def attach(t, k, z, start, plant, inputs, axes):
+    """A line's attachments, in the bodies and in inertial axes."""
+    for end in range(2):
+        point, rate = attachment(t, k, end, plant, inputs)
+        place, speed, _ = line_end(z, start, plant.lines.body[k, end], point, rate)
+        store(axes.point[k], 3 * end, point)
+        store(axes.attached[k], 6 * end, place)
+        store(axes.attached[k], 6 * end + 3, speed)
+
+
+@inner
+def gather_chord(k, g, axes):
+    """A line's part of the sums of (3)."""
+    ends = axes.attached[k]
+    chord = sub(three(ends, 6), three(ends, 0))
+    moving = sub(sub(three(ends, 9), three(ends, 3)), cross(three(axes.origin[g], 6), chord))
     square = dot(chord, chord)
     turning = cross(chord, moving)
     for i in range(3):
