@@ -58,7 +58,7 @@ def scenarios(count: int, first: int) -> None:
                     continue
                 result = score(flown, found)
                 scores[method].append(result)
-                unreported[method] += result.plane_rms_deg > 30.0 and bool(found.trusted[-1])
+                unreported[method] += result.plane_over_stated > 4.0 and bool(found.trusted[-1])
         print(f"\n{name}; {len(scores['Kalman filter'])} flights; median / 90th percentile / worst\n")
         head = (
             "",
@@ -70,7 +70,7 @@ def scenarios(count: int, first: int) -> None:
             "sense right",
             "RMS over stated",
         )
-        rows = [(*head, "refused", "30 deg off, unreported")]
+        rows = [(*head, "refused", "over 4 times stated")]
         for method, results in scores.items():
             columns = np.array(results, dtype=float).T
             right = f"{int(columns[6].sum())} of {len(results)}"

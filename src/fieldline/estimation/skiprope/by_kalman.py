@@ -15,7 +15,7 @@ note says so. Covariances grow by that mean where it is above one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,11 +68,23 @@ class KalmanSettings:
         return np.array([values[name] for name in PARAMETERS])
 
 
+def reading_noise(signals: SkipropeSignals, otherwise: float) -> float:
+    """[T] white noise of a reading by the median size of fourth differences of even samples; `otherwise` where there are few."""
+    steps = np.diff(signals.seconds)
+    even = np.abs(steps - signals.step_s) < 0.05 * signals.step_s
+    even = even[3:] & even[2:-1] & even[1:-2] & even[:-3]
+    if even.sum() < 50:
+        return otherwise
+    fourth = np.diff(signals.field_b, n=4, axis=0)[even]
+    return max(float(np.median(np.abs(fourth))) / (0.6745 * np.sqrt(70.0)), 1e-10)
+
+
 def kalman_track(signals: SkipropeSignals, rows, settings, usual: KalmanSettings = KalmanSettings()) -> Track:
     """Phasors at times `rows` (m,) [s]; see `estimate.Settings`."""
     fastest = max((settings.frequency_hz, *settings.pendulous_hz))
     thin = signals.thinned(1.0 / (SAMPLES_PER_PERIOD * fastest))
     swing = settings.pendulous_hz[0] if settings.pendulous_hz else None
+    usual = replace(usual, noise_tesla=reading_noise(thin, usual.noise_tesla))
     params = usual.packed(settings.frequency_hz, swing)
     memory, memories = np.zeros(SIZE), np.zeros((len(rows), SIZE))
     kalman_run(thin.seconds, thin.field_b, field_vector(thin.geometry), memory, params, rows, memories)

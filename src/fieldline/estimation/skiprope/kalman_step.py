@@ -1,10 +1,11 @@
 """A Kalman filter for the cone, one sample at a time: a pure kernel on a memory array, for ground and on board.
 
-The measured direction is the known one turned by three angles, each slow, with the cone and a second motion on the first two,
+The measured direction is the known one turned by three slow angles, and then by the cone and a second motion about the body's
+first two axes,
 
-    b / |b| = C1(a1) C2(a2) C3(a3) B / |B| + noise,   ak = sk + Re zk + Re pk (k = 1, 2),   a3 = s3               (1)
+    b / |b| = C1(o1) C2(o2) C1(s1) C2(s2) C3(s3) B / |B| + noise,   ok = Re zk + Re pk (k = 1, 2)               (1)
 
-(3-2-1, as the paper's simulation; exact, nothing is taken small). The state, 16 numbers:
+(exact, nothing is taken small). The state, 16 numbers:
 
     s1 s2 s3, their rates         what the body stands askew, and whatever the known field's direction is off, along the orbit:
                                   s'' = -2 z v s' - v^2 s + white noise, v about the orbit's rate, z = 0.7        (2)
@@ -15,6 +16,13 @@ Two numbers of a sample are used, across the predicted direction; its magnitude 
 known from the samples themselves, and a white share of the known field's direction error. A sample further off than `GATE`
 deviations is passed over. The mean
 of its normalised square innovations over some two periods tells whether the filter still follows: 1 where it is consistent.
+
+Nothing in a sample tells of a turn about the field itself, and a filter that linearises soon believes that it knows it, and
+walks off. Each sample therefore also says, weakly, that there is none:
+
+    (b / |b|) . (s1, s2, s3) = 0,     give or take 3 deg in forty seconds                                          (4)
+
+so that the slow part is the least rotation that does.
 
 Between samples the state is carried exactly for a steady w; the covariance to first order in w. Covariance updates keep
 it symmetric by construction (one triangle is computed and copied).
@@ -62,6 +70,7 @@ SLOW_DAMPING = 0.7
 SURE_SENSE = 2.0  # deviations by which the turning parts must differ
 GATE = 36.0  # of the squared normalised innovation
 MOST_MISSED = 20  # passed over in turn: the next is used
+PIN_RAD2_S, LONGEST_PIN_S = 0.1, 10.0
 GIVEN, NOISE_SAMPLES = 10.0, 500.0  # samples that the given noise counts for, and that the noise is averaged over
 OFF_MEMORY_S = 2000.0  # over which the azimuth's offset is averaged
 
@@ -139,17 +148,26 @@ def _turn_pairs(x, p, first, frequency, dt):
 
 @njit(cache=True)
 def predicted(x, known):
-    """The direction (1) of a known unit vector, and its three derivatives by a1, a2, a3."""
-    a1, a2, a3 = x[SLOW] + x[CONE] + x[SWING], x[SLOW + 1] + x[CONE + 2] + x[SWING + 2], x[SLOW + 2]
-    c1, s1, c2, s2, c3, s3 = cos(a1), sin(a1), cos(a2), sin(a2), cos(a3), sin(a3)
-    v3 = (c3 * known[0] + s3 * known[1], c3 * known[1] - s3 * known[0], known[2])
-    v2 = (c2 * v3[0] - s2 * v3[2], v3[1], s2 * v3[0] + c2 * v3[2])
-    v1 = _about_first(c1, s1, v2)
-    by_a1 = (0.0, v1[2], -v1[1])
-    by_a2 = _about_first(c1, s1, (-v2[2], 0.0, v2[0]))
-    turned = (v3[1], -v3[0], 0.0)
-    by_a3 = _about_first(c1, s1, (c2 * turned[0], turned[1], s2 * turned[0]))
-    return v1, by_a1, by_a2, by_a3
+    """The direction (1) of a known unit vector, and its derivatives by o1, o2 (cone and swing) and by s1, s2, s3."""
+    c1, s1 = cos(x[CONE] + x[SWING]), sin(x[CONE] + x[SWING])
+    c2, s2 = cos(x[CONE + 2] + x[SWING + 2]), sin(x[CONE + 2] + x[SWING + 2])
+    d1, e1, d2, e2, d3, e3 = cos(x[0]), sin(x[0]), cos(x[1]), sin(x[1]), cos(x[2]), sin(x[2])
+    v3 = (d3 * known[0] + e3 * known[1], d3 * known[1] - e3 * known[0], known[2])
+    v2 = _about_second(d2, e2, v3)
+    slow = _about_first(d1, e1, v2)
+    swung = _about_second(c2, s2, slow)
+    now = _about_first(c1, s1, swung)
+    by_s1 = _about_first(c1, s1, _about_second(c2, s2, (0.0, slow[2], -slow[1])))
+    by_s2 = _about_first(c1, s1, _about_second(c2, s2, _about_first(d1, e1, (-v2[2], 0.0, v2[0]))))
+    by_s3 = _about_second(d2, e2, (v3[1], -v3[0], 0.0))
+    by_s3 = _about_first(c1, s1, _about_second(c2, s2, _about_first(d1, e1, by_s3)))
+    return now, (0.0, now[2], -now[1]), _about_first(c1, s1, (-swung[2], 0.0, swung[0])), by_s1, by_s2, by_s3
+
+
+@njit(cache=True)
+def _about_second(c, s, v):
+    """V in axes turned about the second."""
+    return (c * v[0] - s * v[2], v[1], s * v[0] + c * v[2])
 
 
 @njit(cache=True)
@@ -164,6 +182,7 @@ def kalman_update(t, field_b, field_c, memory, params):
 
     A sample that is not finite, or not later than the last, changes nothing.
     """
+    since = 1.0
     b, known = (field_b[0], field_b[1], field_b[2]), (field_c[0], field_c[1], field_c[2])
     size, size_known = norm(b), norm(known)
     if not (isfinite(t) and isfinite(size) and isfinite(size_known) and size > 0.0 and size_known > 0.0):
@@ -173,19 +192,22 @@ def kalman_update(t, field_b, field_c, memory, params):
     elif not t > memory[LAST]:
         return False
     else:
+        since = min(t - memory[LAST], LONGEST_PIN_S)
         kept = exp(-(t - memory[LAST]) / OFF_MEMORY_S)
         memory[OFF], memory[OFF_WEIGHT] = kept * memory[OFF], kept * memory[OFF_WEIGHT]
         kalman_carry(t, memory, params)
     x = memory[HEAD : HEAD + STATES]
     p = covariance_of(memory)
-    expected, by_a1, by_a2, by_a3 = predicted(x, unit(known))
+    expected, by_o1, by_o2, by_s1, by_s2, by_s3 = predicted(x, unit(known))
     off = sub(scale(1.0 / size, b), expected)
     variance = _noise(t, b, memory, params) / (size * size) + params[1] ** 2
     first, second = _across(expected)
-    h1 = (dot(first, by_a1), dot(first, by_a2), dot(first, by_a3))
-    h2 = (dot(second, by_a1), dot(second, by_a2), dot(second, by_a3))
+    h1 = (dot(first, by_o1), dot(first, by_o2), dot(first, by_s1), dot(first, by_s2), dot(first, by_s3))
+    h2 = (dot(second, by_o1), dot(second, by_o2), dot(second, by_s1), dot(second, by_s2), dot(second, by_s3))
     r1, r2 = dot(first, off), dot(second, off)
-    s11, s12, s22 = _inside(p, h1, h1) + variance, _inside(p, h1, h2), _inside(p, h2, h2) + variance
+    work = memory[WORK:NOISE]
+    s11, s22 = _inside(p, h1, h1, work) + variance, _inside(p, h2, h2, work) + variance
+    s12 = _inside(p, h1, h2, work)
     nis = (s22 * r1 * r1 - 2.0 * s12 * r1 * r2 + s11 * r2 * r2) / (s11 * s22 - s12 * s12)
     weight = max(1.0 / (memory[COUNT] + memory[ALL_MISSED] + 1.0), _share(t, memory, x))
     memory[MEAN_NIS] += (0.5 * min(nis, GATE) - memory[MEAN_NIS]) * min(weight, 1.0)
@@ -193,9 +215,9 @@ def kalman_update(t, field_b, field_c, memory, params):
         memory[MISSED] += 1.0
         memory[ALL_MISSED] += 1.0
         return False
-    work = memory[WORK:NOISE]
     moved = _take(x, p, work, h1, h2, r1, variance)
     _take(x, p, work, h2, h1, r2 - moved, variance)
+    _pin(x, p, work, expected, PIN_RAD2_S / since)
     memory[OFF] += _azimuth_ahead(x, known)
     memory[OFF_WEIGHT] += 1.0
     memory[MISSED], memory[NIS] = 0.0, nis
@@ -213,36 +235,53 @@ def _across(direction):
 
 @njit(cache=True)
 def _row(p, i, h):
-    """Row i of the covariance times a measurement's derivatives h by (a1, a2, a3)."""
-    by_a1 = p[i, SLOW] + p[i, CONE] + p[i, SWING]
-    by_a2 = p[i, SLOW + 1] + p[i, CONE + 2] + p[i, SWING + 2]
-    return h[0] * by_a1 + h[1] * by_a2 + h[2] * p[i, SLOW + 2]
+    """Row i of the covariance times a measurement's five derivatives."""
+    swung = h[0] * (p[i, CONE] + p[i, SWING]) + h[1] * (p[i, CONE + 2] + p[i, SWING + 2])
+    return swung + h[2] * p[i, SLOW] + h[3] * p[i, SLOW + 1] + h[4] * p[i, SLOW + 2]
 
 
 @njit(cache=True)
-def _inside(p, ha, hb):
+def _along(h, work):
+    """A measurement's derivatives times a vector of all states."""
+    swung = h[0] * (work[CONE] + work[SWING]) + h[1] * (work[CONE + 2] + work[SWING + 2])
+    return swung + h[2] * work[SLOW] + h[3] * work[SLOW + 1] + h[4] * work[SLOW + 2]
+
+
+@njit(cache=True)
+def _inside(p, ha, hb, work):
     """Covariance of two measurements."""
-    a1 = _row(p, SLOW, hb) + _row(p, CONE, hb) + _row(p, SWING, hb)
-    a2 = _row(p, SLOW + 1, hb) + _row(p, CONE + 2, hb) + _row(p, SWING + 2, hb)
-    return ha[0] * a1 + ha[1] * a2 + ha[2] * _row(p, SLOW + 2, hb)
+    for i in range(STATES):
+        work[i] = _row(p, i, hb)
+    return _along(ha, work)
 
 
 @njit(cache=True)
 def _take(x, p, work, h, other, residual, variance):
     """Update by one number; by how much that moves what the other derivatives expect."""
-    total = variance
-    for i in range(STATES):
-        work[i] = _row(p, i, h)
-    total += h[0] * (work[SLOW] + work[CONE] + work[SWING])
-    total += h[1] * (work[SLOW + 1] + work[CONE + 2] + work[SWING + 2]) + h[2] * work[SLOW + 2]
+    total = variance + _inside(p, h, h, work)
     gain = residual / total
     for i in range(STATES):
         x[i] += gain * work[i]
         for j in range(i, STATES):
             p[i, j] -= work[i] * work[j] / total
             p[j, i] = p[i, j]
-    by_a1, by_a2 = work[SLOW] + work[CONE] + work[SWING], work[SLOW + 1] + work[CONE + 2] + work[SWING + 2]
-    return gain * (other[0] * by_a1 + other[1] * by_a2 + other[2] * work[SLOW + 2])
+    return gain * _along(other, work)
+
+
+@njit(cache=True)
+def _pin(x, p, work, direction, variance):
+    """Update by (4)."""
+    total, residual = variance, 0.0
+    for i in range(STATES):
+        work[i] = direction[0] * p[i, 0] + direction[1] * p[i, 1] + direction[2] * p[i, 2]
+    for k in range(3):
+        total += direction[k] * work[k]
+        residual -= direction[k] * x[k]
+    for i in range(STATES):
+        x[i] += residual / total * work[i]
+        for j in range(i, STATES):
+            p[i, j] -= work[i] * work[j] / total
+            p[j, i] = p[i, j]
 
 
 @njit(cache=True)

@@ -99,9 +99,11 @@ class SkipropeSignals:
         return SkipropeSignals(self.seconds[kept], self.field_b[kept], FieldGeometry(*(x[kept] for x in self.geometry)))
 
     def thinned(self, width_s: float) -> SkipropeSignals:
-        """Means of both fields over bins of `width_s` [s]; the same where samples are further apart than half of that."""
-        if not self.step_s < 0.75 * width_s:
+        """Means of both fields over bins of as many whole steps as `width_s` [s] holds; the same where it holds one."""
+        many = int(width_s / self.step_s + 1e-6)
+        if many < 2:
             return self
+        width_s = many * self.step_s
         place = ((self.seconds - self.seconds[0]) / width_s + 1e-6).astype(int)
         count = np.bincount(place)
         kept = count > 0
