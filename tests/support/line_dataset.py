@@ -29,6 +29,9 @@ start_utc = 2026-03-01T00:00:00Z
 duration_s = 6000.0
 output_step_s = 10.0
 
+[integrator]
+method = "rosenbrock"
+
 [orbit.elements]
 altitude_km = 300.0
 inclination_deg = 28.5

@@ -196,7 +196,9 @@ def _tell(dataset: Any, written: list[Path], quiet: bool, as_json: bool) -> None
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:
-    """What flew and how it ended, then a line for each body that turns."""
+    """What flew and how it ended, then a line for each body that turns and each tether."""
+    from fieldline.report.run_line_numbers import line_summary
+
     hours = numbers["duration_s"] / 3600.0
     partial = "" if numbers["complete"] else "PARTIAL: "
     lines = [f"{partial}{numbers['scenario']}: {hours:.4g} h from {numbers['start_utc']}, {numbers['outcome']}"]
@@ -209,6 +211,7 @@ def summary(numbers: dict[str, Any]) -> list[str]:
             parts.append(f"pointing {_angle(told['rms_deg'])} RMS, {_angle(told['worst_deg'])} at worst in the last quarter")
         parts += [f"{what} at their limit {100.0 * share:.3g} %" for what, share in body.get("saturated_share", {}).items()]
         lines.append(f"{name}: " + " · ".join(parts))
+    lines += [line_summary(name, line) for name, line in numbers["lines"].items()]
     if numbers["events"]:
         lines.append("1 event" if numbers["events"] == 1 else f"{numbers['events']} events")
     return lines

@@ -1,4 +1,4 @@
-"""The page around the chapters: one HTML file with its style inside, which needs neither network nor script."""
+"""The page around the chapters: one HTML file with its style inside, which needs no network, and no script but for what moves."""
 
 from __future__ import annotations
 

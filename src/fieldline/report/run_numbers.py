@@ -1,4 +1,4 @@
-"""The numbers of a run that a reader wants first: what flew, how it ended, rate, pointing, saturation."""
+"""The numbers of a run that a reader wants first: what flew, how it ended, rate, pointing, saturation, lines."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ BRAKES = {"torquers", "eddy_currents", "hysteresis", "wheels", "thrusters"}
 
 
 def run_numbers(dataset: Any) -> dict[str, Any]:
-    """What `fieldline simulate --json` prints: plain numbers and words, a record for each body that turns."""
+    """What `fieldline simulate --json` prints: plain numbers and words, a record for each body that turns and each line."""
+    from fieldline.report.line_record import lines_of
+    from fieldline.report.run_line_numbers import line_numbers
+
     record = RunRecord(dataset)
     return {
         "scenario": record.scenario.name,
@@ -27,6 +30,7 @@ def run_numbers(dataset: Any) -> dict[str, Any]:
         "duration_s": float(record.seconds[-1]),
         "samples": len(record.seconds),
         "bodies": {record.bodies[b]: _of_body(record, b) for b in record.rigid},
+        "lines": {line.name: line_numbers(line) for line in lines_of(record)},
         "events": int(dataset.sizes.get("event", 0)),
     }
 

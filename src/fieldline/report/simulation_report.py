@@ -42,19 +42,23 @@ def write_simulation_report(dataset: xarray.Dataset, path: str | Path) -> Path:
 
 def simulation_html(dataset: xarray.Dataset) -> str:
     """The report as text; the same run gives the same text."""
+    from fieldline.report.line_animation import animation_html
     from fieldline.report.markup import facts, flat, section
     from fieldline.report.page import drawings, page
     from fieldline.report.run_load_figures import load_table
+    from fieldline.report.run_numbers import run_numbers
 
     record = _record(dataset)
+    numbers = run_numbers(dataset)
     groups = _pictures(record)
     return page(
         record.scenario.name,
         _span(record),
-        _verdict(record) + _key_numbers(record),
+        _verdict(record, numbers) + _key_numbers(record, numbers),
         [
             ("motion", section("motion", "Motion", _left_out(record), drawings(groups["motion"]))),
             ("bodies", section("bodies", "Several bodies", drawings(groups["bodies"]))),
+            ("lines", section("lines", "Lines", animation_html(record), drawings(groups["lines"]))),
             ("field", section("field", "Field and Sun", drawings(groups["field"]))),
             ("loads", section("loads", "Loads", drawings(groups["loads"]), load_table(record))),
             ("actuators", section("actuators", "Actuators", drawings(groups["actuators"]))),
@@ -93,6 +97,7 @@ def _record(dataset: Any) -> RunRecord:
 
 def _pictures(record: RunRecord) -> dict[str, list[Picture]]:
     """All figures, by chapter, those that the run has the signals for."""
+    from fieldline.report.run_line_figures import line_pictures
     from fieldline.report.run_load_figures import actuator_pictures, torque_picture
     from fieldline.report.run_motion_figures import attitude_picture, place_picture, pointing_picture, rate_picture
     from fieldline.report.run_relative_figures import relative_picture, separation_picture
@@ -102,6 +107,7 @@ def _pictures(record: RunRecord) -> dict[str, list[Picture]]:
         groups: dict[str, list[Picture | None]] = {
             "motion": [draw(record, b) for b in record.rigid for draw in (rate_picture, pointing_picture, attitude_picture)],
             "bodies": [separation_picture(record), relative_picture(record)],
+            "lines": [*line_pictures(record)],
             "field": [place_picture(record)],
             "loads": [torque_picture(record, b) for b in record.rigid],
             "actuators": [picture for b in record.rigid for picture in actuator_pictures(record, b)],
@@ -111,26 +117,23 @@ def _pictures(record: RunRecord) -> dict[str, list[Picture]]:
     return {name: [p for p in group if p is not None] for name, group in groups.items()}
 
 
-def _verdict(record: RunRecord) -> str:
-    """The outcome, large: green where the run went to its end, red where it is partial."""
-    from fieldline.report.markup import text
-    from fieldline.report.verdict import MARKS
+def _verdict(record: RunRecord, numbers: dict[str, Any]) -> str:
+    """The outcome, large: green where the run went to its end, red where it is partial; and what to know of its lines."""
+    from fieldline.report.run_line_numbers import line_warnings
+    from fieldline.report.verdict import panel
 
     state, words = ("usable", "Flown") if record.complete else ("refused", "Partial")
     outcome = str(record.dataset.attrs.get("outcome", ""))
-    note = "" if record.complete else "<ul><li>Everything below ends where the run ended.</li></ul>"
-    return (
-        f'<div class="verdict {state}" role="status"><span class="mark" aria-hidden="true">{MARKS[state]}</span>'
-        f'<div><p class="state">{words}</p><p class="sentence">{text(outcome[:1].upper() + outcome[1:])}</p>{note}</div></div>'
-    )
+    notes = [] if record.complete else ["Everything below ends where the run ended."]
+    notes += [note for name, line in numbers["lines"].items() for note in line_warnings(name, line)]
+    return panel(state, words, outcome[:1].upper() + outcome[1:], notes)
 
 
-def _key_numbers(record: RunRecord) -> str:
+def _key_numbers(record: RunRecord, numbers: dict[str, Any]) -> str:
     """The table of what a reader wants to know first."""
     from fieldline.report.markup import facts, number, text
-    from fieldline.report.run_numbers import run_numbers
+    from fieldline.report.run_line_numbers import line_pairs
 
-    numbers = run_numbers(record.dataset)
     pairs = [("About", text(record.scenario.description))] if record.scenario.description else []
     pairs.append(("Run", f"{number(numbers['duration_s'] / 3600.0, 4)} h, {numbers['samples']:,} outputs"))
     for name, body in numbers["bodies"].items():
@@ -145,6 +148,8 @@ def _key_numbers(record: RunRecord) -> str:
             pairs.append((f"{of}pointing, last quarter: RMS · worst · end", f"{error} deg"))
         for what, share in body.get("saturated_share", {}).items():
             pairs.append((f"{of}{what} at their limit", f"{number(100.0 * share, 3)} % of the outputs"))
+    for name, line in numbers["lines"].items():
+        pairs += line_pairs(name, line)
     return facts([(name[:1].upper() + name[1:], value) for name, value in pairs])
 
 
