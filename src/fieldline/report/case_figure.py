@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldline.errors import InputError
-from fieldline.report import afit_1992_figures, ames_1961_figures, sao_1982_figures, tp3123_figures
+from fieldline.report import afit_1992_figures, afit_1992_flight_figures, ames_1961_figures, sao_1982_figures, tp3123_figures
 from fieldline.report.record import Clock
 from fieldline.report.series import legend, line, points
 from fieldline.report.theme import AXIS_COLOURS, FOURTH, INK, WARM, label_outer, panels, themed
@@ -28,7 +28,7 @@ PANEL_HEIGHT_IN = 1.55
 def case_figure(dataset: Any) -> Figure:
     """The figure of a case's Dataset, its own where it has one; InputError where it has nothing over time."""
     known: dict[str, Any] = {}
-    for room in (ames_1961_figures, sao_1982_figures, tp3123_figures, afit_1992_figures):
+    for room in (ames_1961_figures, sao_1982_figures, tp3123_figures, afit_1992_figures, afit_1992_flight_figures):
         known |= room.OWN_FIGURES
     own = known.get(str(dataset.attrs.get("case", "")))
     if own is not None:

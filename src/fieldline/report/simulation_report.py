@@ -42,6 +42,7 @@ def write_simulation_report(dataset: xarray.Dataset, path: str | Path) -> Path:
 
 def simulation_html(dataset: xarray.Dataset) -> str:
     """The report as text; the same run gives the same text."""
+    from fieldline.report.approach_figures import approach_table
     from fieldline.report.line_animation import animation_html
     from fieldline.report.markup import facts, flat, section
     from fieldline.report.page import drawings, page
@@ -59,6 +60,7 @@ def simulation_html(dataset: xarray.Dataset) -> str:
             ("motion", section("motion", "Motion", _left_out(record), drawings(groups["motion"]))),
             ("bodies", section("bodies", "Several bodies", drawings(groups["bodies"]))),
             ("lines", section("lines", "Lines", animation_html(record), drawings(groups["lines"]))),
+            ("approach", section("approach", "By current", drawings(groups["approach"]), approach_table(record))),
             ("field", section("field", "Field and Sun", drawings(groups["field"]))),
             ("loads", section("loads", "Loads", drawings(groups["loads"]), load_table(record))),
             ("actuators", section("actuators", "Actuators", drawings(groups["actuators"]))),
@@ -97,6 +99,7 @@ def _record(dataset: Any) -> RunRecord:
 
 def _pictures(record: RunRecord) -> dict[str, list[Picture]]:
     """All figures, by chapter, those that the run has the signals for."""
+    from fieldline.report.approach_figures import approach_pictures
     from fieldline.report.run_line_figures import line_pictures
     from fieldline.report.run_load_figures import actuator_pictures, torque_picture
     from fieldline.report.run_motion_figures import attitude_picture, place_picture, pointing_picture, rate_picture
@@ -107,6 +110,7 @@ def _pictures(record: RunRecord) -> dict[str, list[Picture]]:
         groups: dict[str, list[Picture | None]] = {
             "motion": [draw(record, b) for b in record.rigid for draw in (rate_picture, pointing_picture, attitude_picture)],
             "bodies": [separation_picture(record), relative_picture(record)],
+            "approach": [picture for b in record.rigid for picture in approach_pictures(record, b)],
             "lines": [*line_pictures(record)],
             "field": [place_picture(record)],
             "loads": [torque_picture(record, b) for b in record.rigid],

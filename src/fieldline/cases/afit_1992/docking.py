@@ -51,7 +51,7 @@ def docking_standards(
     from fieldline.simulate.scenario.scenario import Scenario
     from fieldline.simulate.scenario.templates import template
 
-    settings = {key: value for key, value in locals().items() if key in DEFAULTS}
+    settings = {key: value for key, value in locals().items() if key in ARGUMENTS}
     whole("runs", runs, 2, 100_000)
     for name in ("field_std", "mass_std", "position_noise_m", "velocity_noise_m_s"):
         number(name, settings[name], 0.0, 10.0)
@@ -76,7 +76,7 @@ def docking_standards(
     return _dataset(_contacts(flown, port), flown, settings)
 
 
-DEFAULTS = docking_standards.__kwdefaults__ | {"runs": 100}
+ARGUMENTS = docking_standards.__code__.co_varnames[:8]
 
 
 def _contacts(flown, port: np.ndarray) -> dict[str, np.ndarray]:

@@ -37,6 +37,9 @@ COMMON = {
         "kg m^2", "principal moments that it reckons with; derived from the body", kind="vector", derived=True
     ),
     "disturbance_s": Parameter("s", "time in which a load that nobody ordered is learned; 0 is never", 600.0, "not negative"),
+    "filter_s": Parameter(
+        "s", "time in which a reading of the place takes over from its forecast; 0: at once", 60.0, "not negative"
+    ),
     "contactor_ohm": Parameter("ohm", "resistance of the plasma contacts of each conductor", 0.0, "not negative"),
     "power_max_w": Parameter("W", "most power of all conductors, as heat; 0 is no limit", 0.0, "not negative"),
     "failed": Parameter("", "names of conductors and thrusters that do nothing", (), "names"),
@@ -163,7 +166,7 @@ def _head(values, controls, mass, moments, n, radius, sizes, conductors: int, th
     head[own.CONTROLS], head[own.CONDUCTORS], head[own.THRUSTERS] = len(controls), conductors, thrusters
     head[own.MEAN_MOTION], head[own.RADIUS], head[own.FACTOR] = n, radius, values["field_factor"]
     head[own.BY_READING], head[own.TARGET] = float(values["field"] == "magnetometer"), target
-    head[own.SETTLE] = values["disturbance_s"]
+    head[own.SETTLE], head[own.FILTER] = values["disturbance_s"], values["filter_s"]
     head[own.ANGLES : own.ANGLES + 3] = np.radians(values["angles_deg"])
     head[own.WEIGHT : own.WEIGHT + 6], head[own.SHARE] = weights, COST
     head[own.POWER_MAX] = values["power_max_w"] or LIMITLESS_W

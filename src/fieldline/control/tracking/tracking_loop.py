@@ -6,6 +6,11 @@
 F x: acceleration of the motion by itself, m: mass and moments of inertia, x_r, a_r: the path. (2) is the load that nobody
 ordered: drag, oblateness, a field that is not the model's; it takes the place of an integral of the error and, because it
 counts what was given and not what was wanted, does not wind up at the limits.
+
+    x <- x_f + dt/(T_f + dt) (x - x_f),   x_f = x0 + dt dx/dt(x0, given + d)                        (3)
+
+(3) is for place and rate alone: the currents are weak, and without it they would spend themselves on the noise of a
+navigation sensor. The forecast leaves no lag, since given and unordered loads are in it.
 """
 
 from __future__ import annotations
@@ -23,7 +28,8 @@ from fieldline.frames.attitude import to_body, to_inertial
 
 MOST_CONTROLS = 24
 HAS_LAST, LAST_TIME, LAST_STATE, GIVEN, DISTURBANCE = 0, 1, 2, 14, 20
-LAST_U, LAST_HELD = 26, 26 + MOST_CONTROLS
+FORECAST = 26
+LAST_U, LAST_HELD = 32, 32 + MOST_CONTROLS
 MEMORY = LAST_HELD + MOST_CONTROLS
 
 
@@ -37,9 +43,30 @@ def free_acceleration(params, x, k):
 
 
 @njit(cache=True, error_model="numpy")
-def _observe(t, x, memory, params):
+def _filter(dt, fresh, x, memory, params):
+    """Equation (3): place and rate in x, and in memory for the next call."""
+    hold = params[own.FILTER]
+    if fresh or not hold > 0.0:
+        for j in range(6):
+            memory[FORECAST + j] = x[j]
+        return
+    before = np.zeros(12)
+    for j in range(6):
+        before[j] = memory[FORECAST + j]
+    share = dt / (hold + dt)
+    for k in range(3):
+        push = (memory[GIVEN + k] + memory[DISTURBANCE + k]) / params[own.MASS + k] + free_acceleration(params, before, k)
+        place = before[2 * k] + dt * (before[2 * k + 1] + 0.5 * dt * push)
+        rate = before[2 * k + 1] + dt * push
+        x[2 * k] = place + share * (x[2 * k] - place)
+        x[2 * k + 1] = rate + share * (x[2 * k + 1] - rate)
+    for j in range(6):
+        memory[FORECAST + j] = x[j]
+
+
+@njit(cache=True, error_model="numpy")
+def _observe(dt, t, x, memory, params):
     """Equation (2), and this state for the next call."""
-    dt = t - memory[LAST_TIME]
     settle = params[own.SETTLE]
     if memory[HAS_LAST] > 0.5 and dt > 0.0 and settle > 0.0:
         middle = np.empty(12)
@@ -82,7 +109,9 @@ def prepared(t, measurement, memory, params, x, error, loads, effect):
         if not abs(x[j]) < 1e12:
             memory[HAS_LAST] = 0.0
             return False, nothing
-    _observe(t, x, memory, params)
+    dt, fresh = t - memory[LAST_TIME], memory[HAS_LAST] < 0.5
+    _observe(dt, t, x, memory, params)
+    _filter(dt, fresh or not dt > 0.0, x, memory, params)
     reference_at(t, params, error, loads)
     for j in range(12):
         error[j] = x[j] - error[j]
