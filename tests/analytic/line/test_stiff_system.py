@@ -102,7 +102,7 @@ LINE = {
     "rest_length_m": 1000.0,
 }
 IMPLICIT = {"method": "rosenbrock"}
-REEL = {"total_length_m": 1300.0, "rate_m_s": 0.0, "lag_s": 0.7, "tension_n": 4.0, "effective_mass_kg": 2.0}
+REEL = {"total_length_m": 1300.0, "rate_m_s": 0.0, "lag_s": 0.7, "tension_n": 4.0, "effective_mass_kg": 40.0}
 
 
 def flight_of(**more):
@@ -153,7 +153,7 @@ def turning_rates(flight, moved, origin, omega):
 CASES = {
     "no damping, turning": ({}, 0.004, 1e-3),
     "damping": ({"damping_n_s": 900.0}, 0.0, 1e-3),
-    "reel that follows a tension": ({"reel": REEL | {"mode": "tension"}, "damping_n_s": 300.0}, 0.0, 1e-2),
+    "reel that follows a tension": ({"reel": REEL | {"mode": "tension"}, "damping_n_s": 300.0}, 0.0, 2e-2),
     "reel that follows a rate": ({"reel": REEL}, 0.0, 1e-2),
 }
 

@@ -48,7 +48,7 @@ class StiffSystem(NamedTuple):
     seat: np.ndarray  # (bodies,) int64
     lever: np.ndarray  # (lines, 2, 9) V of either end
     hold: np.ndarray  # (bodies, 9) sum of s^2 [p x][F_b x]
-    feed: np.ndarray  # (lines, 6) e, pi / (m_r + pi), s^2 T_L, pi
+    feed: np.ndarray  # (lines, 7) e, pi / (m_r + pi), s^2 T_L, pi, mu l / (2 m_r)
     matrix: np.ndarray  # (n, n)
     order: np.ndarray  # (n,) int64
     column: np.ndarray  # (n,)
@@ -67,7 +67,7 @@ def new_system(bodies: int, lines: Lines) -> StiffSystem:
         seat=seat,
         lever=np.zeros((count, 2, 9)),
         hold=np.zeros((bodies, 9)),
-        feed=np.zeros((count, 6)),
+        feed=np.zeros((count, 7)),
         matrix=np.zeros((size, size)),
         order=np.zeros(size, dtype=np.int64),
         column=np.zeros(size),
@@ -159,6 +159,10 @@ def enter_line(k, s, z, start, at, lines, rigid, tensions, axes, system):
         half = next_half
         p0, v0 = p1, v1
     factorise_chain(k, first, nodes, chain)
+    if lines.reel[k] == TENSION_REEL:
+        system.feed[k, 6] = half / lines.reel_lag[k]
+        for i in range(2, 4):
+            keep(chain.ends[k], i, matmul(eased(system.feed[k]), block(chain.ends[k], i)))
     for i in range(2):
         for j in range(2):
             enter_pair(k, i, j, lines.body, system)
@@ -176,6 +180,13 @@ def enter_reel(k, s, length, rest, e, carried, elastic, lines, feed):
     feed[k, 3], feed[k, 4], feed[k, 5] = share, s * s * slope, push
     less = matscale(-share, outer(e, e))
     return matadd(carried, matmul(less, carried)), matadd(elastic, matmul(less, elastic))
+
+
+@inner
+def eased(reel):
+    """E - (mu l / 2 m_r) e e^T: of its pull a reel that gives way spends this part on the half segment that it sets going."""
+    e = three(reel, 0)
+    return matsub(IDENTITY, matscale(reel[6], outer(e, e)))
 
 
 @inner
@@ -273,7 +284,10 @@ def line_load(k, s, rate, at, lines, axes, system):
         x0 = x1
     more_a, more_b = condense(k, first, nodes, chain)
     push_end(6 * system.seat[lines.body[k, 0]], 0, add(more_a, on_a), lever, system.column)
-    push_end(6 * system.seat[lines.body[k, 1]], 1, sub(more_b, behind), lever, system.column)
+    on_b = sub(more_b, behind)
+    if lines.reel[k] == TENSION_REEL:
+        on_b = matvec(eased(system.feed[k]), on_b)
+    push_end(6 * system.seat[lines.body[k, 1]], 1, on_b, lever, system.column)
 
 
 @inner
