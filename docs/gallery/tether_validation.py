@@ -122,8 +122,8 @@ def swings() -> None:
     right.plot(orbits, found.semi_major_m, color=BLUE, label="larger half axis")
     right.plot(orbits, found.semi_minor_m * np.sign(found.sense), color=RED, label="smaller, negative when left-handed")
     right.axhline(0.0, color=GREY, linewidth=0.7)
-    right.set(xlabel="orbits", ylabel="[m]", title="A skiprope of 20 m, begun round")
-    right.legend(frameon=False, fontsize=8, loc="lower right")
+    right.set(xlabel="orbits", ylabel="[m]", title="A skiprope of 20 m, begun round", ylim=(-24.0, 42.0))
+    right.legend(frameon=False, fontsize=8, loc="upper right", ncols=2)
     saved(figure, "tether_swings.png")
     turns = np.flatnonzero(np.diff(np.sign(found.sense)))
     print("a plane at orbits", orbits[turns])
@@ -131,13 +131,15 @@ def swings() -> None:
 
 def orders() -> None:
     """The manufactured solution: nodes and steps."""
-    figure, (left, right) = panels(2, width=8.5)
+    figure, (left, right) = panels(2, width=9.5)
     segments = (5, 10, 20, 40)
     nodes = np.array([manufactured.flown(n - 1, "of_continuum", 2e-3) for n in segments])
     for k, (name, colour) in enumerate((("place [m]", BLUE), ("velocity [m/s]", RED), ("tension / EA", GREEN))):
         left.loglog(segments, nodes[:, k], "o-", color=colour, markersize=4, label=name)
     slope(left, segments, nodes[:, 0], -2)
     left.set(xlabel="segments", ylabel="largest error after 3 s", title="Nodes, force of the continuum")
+    left.set_xticks(segments, [str(n) for n in segments])
+    left.minorticks_off()
     left.legend(frameon=False, fontsize=8)
     steps = (0.08, 0.04, 0.02, 0.01)
     errors = np.array([manufactured.flown(11, "of_chain", step) for step in steps])
@@ -149,8 +151,8 @@ def orders() -> None:
         places = [manufactured.flown(11, "of_chain", 0.01, method, **one)[0] for one in more]
         right.loglog(tolerances, places, "s-", color=colour, markersize=4, label=f"{method}: place [m] against tolerance [m]")
         print(method, ", ".join(f"{one:.0e} {place:.1e}" for one, place in zip(tolerances, places, strict=True)))
-    right.set(xlabel="step [s], or tolerance [m]", title="Steps, force of the chain")
-    right.legend(frameon=False, fontsize=7.5)
+    right.set(xlabel="step [s], or tolerance [m]", title="Steps, force of the chain", ylim=(1e-9, 10.0))
+    right.legend(frameon=False, fontsize=7.5, loc="upper left")
     saved(figure, "tether_orders.png")
     print("orders of nodes", np.log2(nodes[:-1] / nodes[1:]).round(3).tolist())
     print("orders of rk4", np.log2(errors[:-1, 0] / errors[1:, 0]).round(3).tolist())
