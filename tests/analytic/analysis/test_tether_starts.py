@@ -23,6 +23,7 @@ from fieldline.analysis.tether import (
     straight,
     tether_modes,
 )
+from fieldline.analysis.tether.starts import libration_rates
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_GM_M3_S2
 from fieldline.errors import InputError
 
@@ -112,6 +113,21 @@ def test_angles_and_rates_are_those_that_are_seen():
     assert np.isclose(np.ptp(shape.in_plane_rad) / (2.0 * step), 4e-4, rtol=1e-3)
     assert np.isclose((shape.across_rad[2] - shape.across_rad[0]) / (2.0 * step), -3e-4, rtol=1e-3)
     assert np.allclose(shape.deflection_m, 0.0, atol=1e-8) and np.allclose(shape.deflection_rate_m_s, 0.0, atol=1e-8)
+
+
+def test_a_libration_of_both_angles_obeys_its_equations():
+    """(2) of `starts` integrated beside a short massless pair, swinging widely in and across the plane."""
+    line = Strand(np.array([500.0]), np.array([2e4]), np.zeros(1))
+    begun = np.array([0.5, -0.3, 3e-4, 4e-4])
+    told = dict(zip(("in_plane_rad", "across_rad", "in_plane_rate_rad_s", "across_rate_rad_s"), begun, strict=True))
+    state = librating(TOP, AHEAD, line, *BODIES, **told)
+    seconds = np.linspace(0.0, 3000.0, 16)
+    shape = seen(*flown(state, line, seconds, damping_s=1.0), point_masses(line, *BODIES))
+    n = np.linalg.norm(state.velocity_i[0]) / np.linalg.norm(state.position_i[0])
+    law = solve_ivp(lambda _, y: libration_rates(y, n), (0.0, 3000.0), begun, t_eval=seconds, rtol=1e-10, atol=1e-12).y
+    assert np.ptp(law[0]) > 0.6 and np.ptp(law[1]) > 0.5
+    assert np.abs(shape.in_plane_rad - law[0]).max() < 1e-3  # 500 m over the radius, and the stretch
+    assert np.abs(shape.across_rad - law[1]).max() < 1e-3
 
 
 def test_a_swing_in_the_plane_has_the_elliptic_period_and_does_not_ring():

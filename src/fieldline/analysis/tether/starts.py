@@ -118,11 +118,13 @@ def librating(
 def libration_rates(angles: np.ndarray, n: float) -> np.ndarray:
     """(4,) rates of (a, b, a', b') of a straight short line in a circular orbit of rate n [rad/s].
 
-    a'' = 2 (n + a') b' tan b - 3 n^2 sin a cos a,    b'' = -{(n + a')^2 + 3 n^2 cos^2 a} sin b cos b        (2)
+    a'' = -2 (n - a') b' tan b - 3 n^2 sin a cos a,    b'' = -{(n - a')^2 + 3 n^2 cos^2 a} sin b cos b       (2)
+
+    n - a': with the lower end ahead the line turns against the orbit.
     """
     a, b, da, db = angles
-    in_plane = 2.0 * (n + da) * db * np.tan(b) - 3.0 * n**2 * np.sin(a) * np.cos(a)
-    across = -((n + da) ** 2 + 3.0 * n**2 * np.cos(a) ** 2) * np.sin(b) * np.cos(b)
+    in_plane = -2.0 * (n - da) * db * np.tan(b) - 3.0 * n**2 * np.sin(a) * np.cos(a)
+    across = -((n - da) ** 2 + 3.0 * n**2 * np.cos(a) ** 2) * np.sin(b) * np.cos(b)
     return np.array([da, db, in_plane, across])
 
 
