@@ -86,12 +86,12 @@ def relative_motion_h(dataset: Any, index: int, first: int = 0) -> tuple[np.ndar
 def corridor_deg(place: np.ndarray) -> float:
     """Half-angle [deg] of the cone with its point at the last place, about the first, that holds every place on the way.
 
-    What lies within a tenth of the way from the point is left out: a cone ends at its point.
+    What lies within a tenth of the way from the point is left out: a cone ends at its point. 0 for a body that stands.
     """
     from_end = place - place[-1]
     length = float(np.linalg.norm(from_end[0]))
     far = np.linalg.norm(from_end, axis=1) > 0.1 * length
-    if length < 1e-9 or not far.any():
+    if length < 0.05 * float(np.linalg.norm(place, axis=1).max()) or not far.any():
         return 0.0
     along = from_end[far] @ (from_end[0] / length)
     across = np.linalg.norm(from_end[far] - along[:, None] * (from_end[0] / length), axis=1)
