@@ -9,7 +9,7 @@ centre of mass, is straight below it at r1. With e small, x' = rbar n e is added
 
 The unstretched length is that which balances the tension of the pair at the length from the Shuttle to the attachment. A
 line with mass is a string of beads, point masses on lines without mass; they start on the straight line, turning with the
-pair, and feel the plant's point Earth alone (GM 2e-6 above GM').
+pair. The Earth is a point of the program's GM; what else surrounds the two masses acts on them alone.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ def line_records(pair: Pair, length_m: float) -> list[dict]:
         }
         for below, above, rest in zip(names[:-1], names[1:], rests, strict=True)
     ]
-    found[0]["from_point_b_m"] = floats(pair.lever_b_m)
+    found[0] |= {"from_point_b_m": floats(pair.lever_b_m), "from_joint_damping_n_m_s": float(pair.angular_damping_n_m_s)}
     return found
 
 
@@ -175,8 +175,6 @@ def scenario_of(
     upper_air = {**air, "drag_area_m2": air["upper_drag_area_m2"]} if air and "upper_drag_area_m2" in air else None
     for body, its_air in zip(bodies, (upper_air, air), strict=True):
         body["load"] = _loads(body["mass_kg"], oblate, anomaly, its_air)
-    if pair.angular_damping_n_m_s > 0.0:
-        _add_joint(pair, lines, *bodies)
     string, string_places, string_velocities = _string(pair, places, velocities, lever, inclination_deg, eccentricity)
     everything = bodies + string
     _put_beside(everything, np.vstack([places, string_places]), np.vstack([velocities, string_velocities]))
@@ -189,7 +187,7 @@ def scenario_of(
                 "output_step_s": number("output_step_s", output_step_s, 1e-3),
             },
             "integrator": EXACT,
-            "environment": {"gravity": "point", "uniform_field_i_tesla": [1e-9, 0.0, 0.0]},
+            "environment": {"gravity": "point", "gravity_gm_m3_s2": GM_M3_S2, "uniform_field_i_tesla": [1e-9, 0.0, 0.0]},
             "orbit": {"state": {"position_km": floats(1e-3 * places[0]), "velocity_km_s": floats(1e-3 * velocities[0])}},
             "body": everything,
             "line": lines,
@@ -226,18 +224,10 @@ def _put_beside(bodies: list[dict], places, velocities) -> None:
         body |= {"offset_o_m": floats(offset), "offset_rate_o_m_s": floats(rate)}
 
 
-def _add_joint(pair: Pair, lines: list[dict], shuttle: dict, subsatellite: dict) -> None:
-    """Angular damping at the attachment; it sees a far end that is the Shuttle."""
-    if len(lines) > 1:
-        raise InputError("angular damping is there for a line without beads alone, as in the report.")
-    joint = dict(zip(("x_m", "y_m", "z_m"), floats(pair.lever_b_m), strict=True))
-    joint |= {"rest_length_m": lines[0]["rest_length_m"], "damping_n_m_s": float(pair.angular_damping_n_m_s)}
-    shuttle["load"].append({"function": f"{HERE}.attachment:far_end"})
-    subsatellite["load"].append({"function": f"{HERE}.attachment:joint_damping", "parameters": joint})
-
-
 def _loads(mass_kg: float, oblate: bool, anomaly: dict | None, air: dict | None) -> list[dict]:
-    """What surrounds a body, as a load."""
+    """What surrounds a body besides the pull of a point, as a load."""
+    if not oblate and anomaly is None and air is None:
+        return []
     own = {key: value for key, value in (air or {}).items() if key != "upper_drag_area_m2"}
     parameters = load_parameters(mass_kg, j2=J2 if oblate else 0.0, anomaly=anomaly, air=own or None)
     return [{"function": f"{HERE}.surroundings:surroundings_of_1978", "parameters": parameters}]

@@ -1,15 +1,14 @@
-"""The 1978 program's surroundings of the two masses, as a load for the plant: its own Earth, air and mass anomaly.
+"""The 1978 program's surroundings of the two masses, as a load for the plant: its own oblateness, air and mass anomaly.
 
-    F / m = -(GM' - GM) x / r^3                                                     what GM' differs by      (1)
-          + J2 in the equator of the inertial axes                                                          (2)
-          - G dm (x - x_a) / |x - x_a|^3,  G dm = dg (R_E pi / 180)^2 / (2 pi)       gravity anomaly           (3)
-          - C_d A rho0 exp(-(h - h0) / H) |v| v / (2 m),  h = r - R_E                drag                      (4)
+    F / m = J2 in the equator of the inertial axes                                                          (1)
+          - G dm (x - x_a) / |x - x_a|^3,  G dm = dg (R_E pi / 180)^2 / (2 pi)       gravity anomaly           (2)
+          - C_d A rho0 exp(-(h - h0) / H) |v| v / (2 m),  h = r - R_E                drag                      (3)
 
-The air does not turn with the Earth, and the anomaly does not either: the annex computes both in inertial axes. (3) is the
+The air does not turn with the Earth, and the anomaly does not either: the annex computes both in inertial axes. (2) is the
 pull of a point that would give dg [1 Gal = 0.01 m/s^2] as a disc of one square degree does; the annex names its input and
 not its formula.
 
-GM' = 3.986013e14 m^3/s^2 and R_E = 6378.0 km are not printed. They follow from the printed orbital rate and tension of the
+GM = 3.986013e14 m^3/s^2 and R_E = 6378.0 km are not printed. They follow from the printed orbital rate and tension of the
 spinning test case, both of which they give to the tenth digit, and no other common pair does.
 """
 
@@ -21,9 +20,8 @@ import numpy as np
 from numba import njit
 
 from fieldline.cases.erbs_like import number
-from fieldline.constants import EARTH_GM_M3_S2
 from fieldline.errors import InputError, nearest
-from fieldline.frames.vectors import add, axpy, dot, norm, scale, sub
+from fieldline.frames.vectors import add, dot, norm, scale, sub
 
 GM_M3_S2 = 3.986013e14
 EARTH_RADIUS_M = 6378.0e3
@@ -44,7 +42,7 @@ def oblateness(place, j2):
 
 @njit(cache=True)
 def anomaly_pull(place, anomaly_place, anomaly):
-    """Acceleration [m/s^2] of (3) of an anomaly dg [m/s^2] at a point of the ground."""
+    """Acceleration [m/s^2] of (2) of an anomaly dg [m/s^2] at a point of the ground."""
     away = sub(place, anomaly_place)
     degree = EARTH_RADIUS_M * pi / 180.0
     return scale(-anomaly * degree * degree / (2.0 * pi * norm(away) ** 3), away)
@@ -52,7 +50,7 @@ def anomaly_pull(place, anomaly_place, anomaly):
 
 @njit(cache=True)
 def drag(place, velocity, area, density, reference, scale_height):
-    """Force [N] of (4); `area` is C_d A [m^2]."""
+    """Force [N] of (3); `area` is C_d A [m^2]."""
     height = sqrt(dot(place, place)) - EARTH_RADIUS_M
     push = 0.5 * area * density * exp(-(height - reference) / scale_height)
     return scale(-push * norm(velocity), velocity)
@@ -60,19 +58,18 @@ def drag(place, velocity, area, density, reference, scale_height):
 
 @njit(cache=True)
 def surroundings_of_1978(t, state, parameters):
-    """Force [N] and torque (none) on a body: (1) to (4), a compiled load of the user's. `load_parameters` gives parameters."""
+    """Force [N] and torque (none) on a body: (1) to (3), a compiled load of the user's. `load_parameters` gives parameters."""
     place, velocity = (state[0], state[1], state[2]), (state[3], state[4], state[5])
-    mass, square = parameters[0], dot(place, place)
-    pull = scale(-(GM_M3_S2 - EARTH_GM_M3_S2) / (square * sqrt(square)), place)  # (1)
+    pull = (0.0, 0.0, 0.0)
     if parameters[1] != 0.0:
-        pull = add(pull, oblateness(place, parameters[1]))  # (2)
+        pull = oblateness(place, parameters[1])  # (1)
     if parameters[2] != 0.0:
         there = (parameters[3], parameters[4], parameters[5])
-        pull = add(pull, anomaly_pull(place, there, MGAL_M_S2 * parameters[2]))  # (3)
-    force = scale(mass, pull)
+        pull = add(pull, anomaly_pull(place, there, MGAL_M_S2 * parameters[2]))  # (2)
+    force = scale(parameters[0], pull)
     if parameters[6] != 0.0:
         push = drag(place, velocity, parameters[6], parameters[7], parameters[8], parameters[9])
-        force = axpy(1.0, push, force)  # (4)
+        force = add(push, force)  # (3)
     out = np.zeros(6)
     out[0], out[1], out[2] = force
     return out

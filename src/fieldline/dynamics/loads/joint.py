@@ -20,7 +20,7 @@ from __future__ import annotations
 from math import sqrt
 
 from fieldline.compiled import kernel
-from fieldline.frames.vectors import add, axpy, cross, dot, norm, scale, sub
+from fieldline.frames.vectors import add, axpy, cross, dot, norm, scale
 
 ALIGNED = 1e-14  # |r x F| below which its direction is rounding
 
@@ -50,10 +50,3 @@ def joint_torque(lever, omega, chord, chord_rate, damping):
     else:
         rate = -(dot(arm_rate, pull) + dot(arm, pull_rate)) / sine  # (2)
     return scale(damping * rate, u)  # (1)
-
-
-@kernel
-def attachment_chord(place, rate, omega, lever, far_place, far_rate):
-    """p [m] and p' [m/s] from the attachment at `lever` on a body to the line's far end, all in inertial axes."""
-    swing = cross(omega, lever)
-    return sub(far_place, add(place, lever)), sub(far_rate, add(rate, swing))

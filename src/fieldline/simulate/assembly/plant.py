@@ -57,7 +57,7 @@ def surroundings_of(scenario, duration_s: float) -> Surroundings:
     uniform = environment.uniform_field_i_tesla
     middle = start + np.timedelta64(round(0.5e9 * duration_s), "ns")
     return Surroundings(
-        gravity=fresh(gravity_model(environment.gravity, environment.gravity_degree)),
+        gravity=_gravity(environment),
         field=no_field() if uniform is not None else fresh(environment.field_model().at(middle)),
         uniform_field_i=np.array(uniform if uniform is not None else (0.0, 0.0, 0.0), dtype=float),
         atmosphere=fresh(air_of(environment.atmosphere, start, duration_s)),
@@ -65,6 +65,13 @@ def surroundings_of(scenario, duration_s: float) -> Surroundings:
         ephemeris=fresh(ephemeris_table(start, duration_s, earth_orientation(scenario))),
         rotating=environment.gravity != "point",
     )
+
+
+def _gravity(environment):
+    """Gravity, with a parameter GM of the scenario's own where there is one."""
+    gravity = fresh(gravity_model(environment.gravity, environment.gravity_degree))
+    own = environment.gravity_gm_m3_s2
+    return gravity if own is None else gravity._replace(gm=own)
 
 
 def air_of(air, start, duration_s: float):

@@ -82,6 +82,13 @@ class Environment(Record):
     gravity_degree: int | None = Field(
         default=None, ge=2, le=70, description='highest degree for gravity = "harmonic"; 20 by default'
     )
+    gravity_gm_m3_s2: float | None = Field(
+        default=None,
+        ge=3.98e14,
+        le=3.99e14,
+        description="the Earth's gravitational parameter, for comparison with programs that used another [m^3/s^2]; orbits "
+        "from elements keep the usual one",
+    )
     atmosphere: Atmosphere = Field(default=Atmosphere(), description="density of the air, for drag")
     plasma: Plasma = Field(default=Plasma(), description="electrons of the ionosphere, for lines that collect current")
     earth_orientation: str | None = Field(
@@ -96,6 +103,10 @@ class Environment(Record):
         found = []
         if self.gravity != "harmonic" and self.gravity_degree is not None:
             found.append(("gravity_degree", f'has no meaning for gravity = "{self.gravity}"; choose "harmonic"'))
+        if self.gravity == "harmonic" and self.gravity_gm_m3_s2 is not None:
+            found.append(
+                ("gravity_gm_m3_s2", 'has no meaning for gravity = "harmonic", whose table brings its own; leave it out')
+            )
         options = [key for key in type(self).model_fields if key.startswith("field_") and getattr(self, key) is not None]
         if self.uniform_field_i_tesla is not None:
             found += [(key, "has no meaning beside uniform_field_i_tesla; leave one of them out") for key in options]
