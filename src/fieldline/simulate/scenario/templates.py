@@ -18,6 +18,8 @@ TEMPLATES = {
     "observatory": "an observatory held on a star for a day",
     "pair": "two bodies on a line",
     "tumble": "a free tumble with a magnetometer, for telemetry",
+    "tss1r": "TSS-1R on station: 20 km of conducting tether, its current, heat and swing",
+    "deorbit_tape": "a bare electrodynamic tape of 500 m brings a satellite down",
     "standoff": "a tank with towers stands beside a target by currents in its towers",
     "r-bar": "the same from above, slowly",
     "v-bar": "the same from ahead, along the track",
