@@ -18,6 +18,7 @@ from pathlib import Path
 import field
 import filter as kalman
 import plant
+import skiprope
 from measure import machine, timed, wall
 
 LENGTHS = (1_000, 10_000, 100_000, 1_000_000)
@@ -47,6 +48,11 @@ def filter_chapter() -> list[str]:
 def plant_chapter() -> list[str]:
     """The plant against C and Basilisk, and many satellites."""
     return plant.chapter(markdown)
+
+
+def skiprope_chapter() -> list[str]:
+    """A day of the tethered satellite, and its live stream."""
+    return skiprope.chapter(markdown)
 
 
 def import_s() -> float:
@@ -90,7 +96,9 @@ def scaling_chapter() -> list[str]:
 
 def page() -> str:
     """The whole page."""
-    chapters = [chapter() for chapter in (start_chapter, field_chapter, filter_chapter, plant_chapter, scaling_chapter)]
+    chapters = [
+        chapter() for chapter in (start_chapter, field_chapter, filter_chapter, skiprope_chapter, plant_chapter, scaling_chapter)
+    ]
     head = [
         "# Benchmarks",
         "",

@@ -9,8 +9,10 @@ from fieldline.estimation.skiprope import (
     FieldGeometry,
     FieldKnowledge,
     axes_about,
+    cone_signals,
     corrected_signals,
     despun,
+    estimate_skiprope,
     field_geometry,
     field_vector,
     in_field_plane,
@@ -236,3 +238,13 @@ def test_a_nutating_satellite(spin_deg_s, sense):
     u, v, _ = (up @ dcm_bi[:, 2].T)[:, 400:]
     off = tilt_azimuth(reading, seconds[400:]).azimuth_rad - np.arctan2(-u, v)
     assert np.sqrt(np.mean(((off + np.pi) % (2 * np.pi) - np.pi) ** 2)) < np.radians(4.0)
+
+    signals = cone_signals(seconds, field_b, field_i, body_axis=[0.0, 0.0, 1.0], cone_axis=np.sign(spin) * momentum_i)
+    for method, worst_deg in (("harmonic", 0.6), ("kalman", 3.0), ("bandpass", 4.0)):
+        found = estimate_skiprope(signals, tether_length_m=np.pi, yaw_std_rad=np.pi, band_hz=(0.02, 0.2), method=method)
+        assert (found.sense[found.trusted] == sense).all() and found.trusted.sum() > 200
+        assert found.frequency_hz[-1] == pytest.approx(nutation_hz, rel=5e-4)
+        assert np.median(found.amplitude_rad) == pytest.approx(np.sin(tilt), rel=0.01)
+        true = np.interp(found.seconds, seconds[400:], np.unwrap(np.arctan2(-u, v))) + np.pi
+        off = np.angle(np.exp(1j * (found.plane_rad - true)))[(found.seconds > 200.0) & found.trusted]
+        assert np.sqrt(np.mean(off**2)) < np.radians(worst_deg)

@@ -9,7 +9,18 @@ import numpy as np
 import pytest
 
 import fieldline as fl
-from fieldline.estimation.skiprope import FieldGeometry, axes_about, corrected_signals, despun, field_geometry, read_cone, tune
+from fieldline.estimation.skiprope import (
+    FieldGeometry,
+    SkipropeSignals,
+    axes_about,
+    cone_signals,
+    corrected_signals,
+    despun,
+    estimate_skiprope,
+    field_geometry,
+    read_cone,
+    tune,
+)
 from fieldline.estimation.skiprope.spectrum import spectrum
 from fieldline.frames.attitude import dcm_from_quaternion
 from tests_support import SAMPLE_CSV, orbit
@@ -67,3 +78,46 @@ def test_a_cone_put_in_is_found(arc, sense):
     assert reading.sense == sense
     assert reading.frequency_hz == pytest.approx(sense * 0.187, rel=3e-3)
     assert np.degrees(reading.amplitude_rad) == pytest.approx(0.6, rel=0.15)
+
+
+@pytest.fixture(scope="module")
+def cone(arc):
+    """The same stretch through the tool for any cone."""
+    flown = fl.estimate_attitude(fl.read_telemetry(SAMPLE_CSV), orbit())
+    seconds = (flown.time.values - flown.time.values[0]).astype("timedelta64[ns]").astype(float) * 1e-9
+    kept = (seconds >= 561.0) & (seconds <= 1634.0)
+    omega = flown.omega_bi_b.values[kept].mean(axis=0)
+    dcm_bi = dcm_from_quaternion(flown.q_bi.values[kept])
+    found = cone_signals(
+        seconds[kept],
+        flown.field_b.values[kept],
+        flown.field_i.values[kept],
+        body_axis=omega,
+        cone_axis=np.einsum("nji,j->i", dcm_bi, omega),
+        degree=3,
+        spin_rate_rad_s=float(np.linalg.norm(omega)),
+    )
+    assert np.allclose(np.abs(found.corrected), np.abs(corrected_signals(arc[1].field_b, arc[2])), atol=1e-6)
+    return found
+
+
+def told(signals):
+    return estimate_skiprope(signals, tether_length_m=np.pi, yaw_std_rad=np.pi, band_hz=BAND_HZ)
+
+
+def test_the_tool_says_that_there_is_none(cone):
+    found = told(cone)
+    assert not found.detected and found.verdict.startswith("no skiprope")
+    inside = (found.detection.frequency_hz > BAND_HZ[0]) & (found.detection.frequency_hz < BAND_HZ[1])
+    assert np.degrees(np.median(found.detection.threshold_rad[inside])) < 0.15
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("size_deg", [0.2, 0.6])
+def test_the_tool_finds_a_cone_put_in(cone, sense, size_deg):
+    wt = sense * 2.0 * np.pi * 0.187 * cone.seconds
+    tilt = np.radians(size_deg) * np.stack([np.cos(wt), np.sin(wt), np.zeros_like(wt)], axis=1)
+    found = told(SkipropeSignals(cone.seconds, cone.field_b - np.cross(tilt, cone.field_b), cone.geometry))
+    assert found.detected and np.sign(found.sense.sum()) == sense
+    assert found.frequency_hz[0] == pytest.approx(0.187, abs=5e-4)
+    assert abs(np.degrees(np.median(found.amplitude_rad)) - size_deg) < 2.0 * np.degrees(np.median(found.amplitude_std_rad))
