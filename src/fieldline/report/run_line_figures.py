@@ -95,7 +95,7 @@ def current_picture(line: LineRecord) -> Picture | None:
     rows += [
         (words, unit, ((line.values(kind), ""),))
         for kind, words, unit in (("emf", "electromotive force", "V"), ("power", "power delivered", "W"))
-        if line.has(kind)
+        if line.has(kind) and line.values(kind).any()
     ]
     forces = [
         (1e3 * np.linalg.norm(line.values(kind), axis=1), words)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fieldline.analysis.line_shape import STRAIGHT
 from fieldline.report.line_record import LineRecord
 from fieldline.report.markup import number, text
 from fieldline.report.run_record import DEG
@@ -45,6 +46,8 @@ def _skiprope(line: LineRecord) -> dict[str, Any]:
     if found is None:
         return {}
     last = slice(-max(1, int(LAST * len(found.sense))), None)
+    if found.rate_rad_s[last].mean() <= 0.0 or found.semi_major_m[last].mean() <= STRAIGHT * line.shape.chord_m[-1]:
+        return {}
     sense = float(np.mean(found.sense[last]))
     return {
         "skiprope": {
@@ -68,7 +71,7 @@ def _heat_and_current(line: LineRecord) -> dict[str, Any]:
         numbers["current_mean_a"] = float(np.nanmean(current))
     if line.has("emf"):
         numbers["emf_largest_v"] = float(np.abs(line.values("emf")).max())
-    if line.has("power"):
+    if line.has("power") and line.values("power").any():
         power = line.values("power")
         numbers["power_mean_w"], numbers["power_largest_w"] = float(power.mean()), float(power.max())
     return numbers

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fieldline.analysis.line_shape import STRAIGHT
 from fieldline.report.decimation import cloud
 from fieldline.report.line_record import LineRecord
 from fieldline.report.run_record import DEG
@@ -127,7 +128,8 @@ def skiprope_picture(line: LineRecord) -> Picture | None:
     stroke(axes[1, 0], run, found.sense, 2)
     axes[1, 0].set_ylim(-1.15, 1.15)
     finish(axes[1, 0], run, "sense: 1 right-handed about the line downwards, −1 left-handed", "", keyed=False)
-    period = 2.0 * np.pi / np.maximum(found.rate_rad_s, 1e-9)
+    swings = found.semi_major_m > STRAIGHT * line.shape.chord_m
+    period = np.where(swings, 2.0 * np.pi / np.maximum(found.rate_rad_s, 1e-9), np.nan)
     stroke(axes[2, 0], run, period, 3)
     fit(axes[2, 0], period, least=1e-3)
     finish(axes[2, 0], run, "period", "s", keyed=False)
@@ -181,5 +183,5 @@ def equal_scales(axes: Any) -> None:
 def _time_key(axes: Any, label: str, last: float) -> None:
     """A small key of the colours of time."""
     for share in (0.0, 0.5, 1.0):
-        axes.plot([], [], color=time_colour(share), linewidth=2.0, label=f"{share * last:.4g}")
+        axes.plot([], [], color=time_colour(share), linewidth=2.0, label=f"{share * last:.3g}")
     axes.legend(loc="upper right", title=label.split(" after ", maxsplit=1)[0], title_fontsize=8.0)

@@ -17,6 +17,7 @@ TEMPLATES = {
     "passive": "a magnet and hysteresis rods, no software",
     "observatory": "an observatory held on a star for a day",
     "pair": "two bodies on a line",
+    "microsat_pair": "two microsatellites on a thin line of 500 m, swinging",
     "tumble": "a free tumble with a magnetometer, for telemetry",
     "tss1r": "TSS-1R on station: 20 km of conducting tether, its current, heat and swing",
     "deorbit_tape": "a bare electrodynamic tape of 500 m brings a satellite down",
