@@ -13,6 +13,7 @@ import numpy as np
 from PIL import Image
 
 import fieldline as fl
+from fieldline.report.sao_1982_figures import decades
 from fieldline.report.series import legend, line
 from fieldline.report.theme import AXIS_COLOURS, INK, WARM, label_outer, panels, themed, write_png
 from fieldline.simulate.scenario.templates import template
@@ -57,7 +58,7 @@ def figure_deployment(data):
     """Length, rate, tension, swing over the hours; and the way of the probe below the ship."""
     hours = data.seconds.values / 3600.0
     way = in_orbital_axes(data, data.position_i.values[:, 0] - data.position_i.values[:, 1], 1)
-    figure, axes = panels(4, 1, height_in=7.4, row_gap=0.26)
+    figure, axes = panels(4, 1, height_in=7.4, row_gap=0.26, right=0.94)
     length, rate, pull, angle = axes[:, 0]
     line(length, hours, 1e-3 * data.deployed_length_tether.values, BLUE, width=1.4)
     length.set(title="unstretched length out, nodes out", ylabel="[km]")
@@ -70,6 +71,7 @@ def figure_deployment(data):
     line(pull, hours, reel_tension(data), RED, "at the reel", width=1.2)
     line(pull, hours, data.tension_tether.values[:, 0], BLUE, "at the probe", width=1.2)
     pull.set(title="tension", ylabel="[N]", yscale="log")
+    decades(pull.yaxis)
     legend(pull)
     line(angle, hours, np.degrees(np.arctan2(way[:, 0], way[:, 2])), BLUE, "in the plane, ahead", width=1.2)
     line(angle, hours, np.degrees(np.arctan2(way[:, 1], way[:, 2])), GREEN, "across it", width=1.2)
@@ -130,7 +132,8 @@ def main():
         figure_deployment(flown("deploy"))
         moving = fl.Scenario.from_toml(template("tethered", "tethered"))
         turn_alone = [task.model_dump(exclude_unset=True) for task in moving.software if task.name == "turn"]
-        figure_attitude(flown("tethered"), flown("tethered", software=turn_alone))
+        short = {"time.duration_s": 1500.0, "time.output_step_s": 1.0}
+        figure_attitude(flown("tethered", **short), flown("tethered", software=turn_alone, **short))
 
 
 if __name__ == "__main__":
