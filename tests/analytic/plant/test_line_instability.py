@@ -7,7 +7,6 @@ from scipy.integrate import solve_ivp
 import plant_flights as pf
 from fieldline.analysis.electrodynamic import balanced_mass, libration_rates, torque_ratio
 
-pytestmark = pytest.mark.kernels
 LENGTH, INCLINATION_DEG, MOMENT = 1000.0, 45.0, 7.8e22
 
 

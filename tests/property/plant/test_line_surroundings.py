@@ -51,7 +51,7 @@ CIRCUITS = {
 }
 
 
-def flight_of(circuit=None, heat=HEAT, air="layered", seconds=0.01, output=None, **rope):
+def flight_of(circuit=None, heat=HEAT, air="layered", seconds=0.01, output=None, step=0.01, **rope):
     """Two points on a bent line of three nodes, 420 km up, flown for a moment so that the line has looked around."""
     environment = {"gravity": "point", "atmosphere": {"model": air}, "plasma": {"model": "chapman"}}
     line = ROPE | {key: value for key, value in (("circuit", circuit), ("heat", heat)) if value} | rope
@@ -59,7 +59,7 @@ def flight_of(circuit=None, heat=HEAT, air="layered", seconds=0.01, output=None,
         pf.scenario(
             pf.body("low", kind="point", mass_kg=60.0),
             pf.body("high", kind="point", mass_kg=40.0, offset_o_m=(150.0, -90.0, -1996.0), offset_rate_o_m_s=(0.3, 0.2, 0.1)),
-            line=[line], environment=environment, seconds=seconds, output=output, integrator={"step_s": 0.01},
+            line=[line], environment=environment, seconds=seconds, output=output, integrator={"step_s": step},
             orbit={"elements": {"altitude_km": 420.0, "inclination_deg": 40.0, "true_anomaly_deg": 70.0}},
         )
     )  # fmt: skip
