@@ -34,6 +34,7 @@ TURN = 2.0 * np.pi
 LOST = 4.0  # mean NIS over two periods
 SETTLED = 0.25  # deviation of the cone's phasors over the cone, from which it is trusted
 SAMPLES_PER_PERIOD = 24
+KEPT = 0.99  # of the differences
 MANY = 0.05  # of the samples, passed over: worth a note
 
 
@@ -69,14 +70,14 @@ class KalmanSettings:
 
 
 def reading_noise(signals: SkipropeSignals, otherwise: float) -> float:
-    """[T] white noise of a reading by the median size of fourth differences of even samples; `otherwise` where there are few."""
+    """[T] white noise of a reading by fourth differences of even samples, the largest left out; `otherwise` of few samples."""
     steps = np.diff(signals.seconds)
     even = np.abs(steps - signals.step_s) < 0.05 * signals.step_s
     even = even[3:] & even[2:-1] & even[1:-2] & even[:-3]
     if even.sum() < 50:
         return otherwise
-    fourth = np.diff(signals.field_b, n=4, axis=0)[even]
-    return max(float(np.median(np.abs(fourth))) / (0.6745 * np.sqrt(70.0)), 1e-10)
+    size = np.sort(np.abs(np.diff(signals.field_b, n=4, axis=0)[even]).reshape(-1))
+    return max(float(np.sqrt(np.mean(size[: int(KEPT * len(size))] ** 2) / 70.0)), 1e-10)
 
 
 def kalman_track(signals: SkipropeSignals, rows, settings, usual: KalmanSettings = KalmanSettings()) -> Track:
