@@ -67,12 +67,46 @@ def test_gains_made_anew_are_stable_at_the_designs_own_inclination():
     assert float(found["gain_norm"].max() / found["gain_norm"].min()) > 2.0
 
 
+PERIODIC = {
+    ("standoff", 28.5): -20.3,
+    ("standoff", 60.0): -12.5,
+    ("standoff", 78.5): -5.65,
+    ("standoff", 90.0): -3.6,  # where the thesis has it out of reach
+    ("r-bar", 28.5): -60.9,
+    ("r-bar", 60.0): -39.8,
+}
+
+
+@pytest.mark.parametrize(("case", "inclination"), PERIODIC)
+def test_gains_over_the_day_are_stable_at_every_inclination(case, inclination):
+    found = turning_field(case, "periodic", inclination, step_s=120.0)
+    assert float(found["log_multiplier"]) == pytest.approx(PERIODIC[case, inclination], abs=0.2)
+    if inclination > 70.0:
+        assert float(found["gain_norm"].max()) > 30.0 * float(found["gain_norm"].median())  # peaks that need limits
+
+
+@pytest.mark.parametrize("scale", [0.7, 1.3])
+@pytest.mark.parametrize("controller", ["frozen", "periodic"])
+def test_a_field_off_by_a_third_does_not_lose_the_loop(controller, scale):
+    for inclination in (0.0, 28.5) if controller == "periodic" else (0.0,):
+        found = turning_field("r-bar", controller, inclination, field_scale=scale, step_s=60.0)
+        assert float(found["log_multiplier"]) < -3.0
+
+
+def test_nor_does_the_real_field_in_place_of_the_dipole():
+    dipole = turning_field("r-bar", "periodic", 28.5, step_s=60.0)
+    real = turning_field("r-bar", "periodic", 28.5, truth="IGRF-14", step_s=60.0)
+    assert float(real["log_multiplier"]) == pytest.approx(float(dipole["log_multiplier"]), rel=0.25)
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         ({"case": "rbar"}, 'did you mean "r-bar"'),
         ({"controller": "froze"}, 'did you mean "frozen"'),
-        ({"controller": "periodic", "inclination_deg": 28.5}, "needs an equatorial orbit"),
+        ({"controller": "periodic", "duration_s": 100.0}, "has a period of its own"),
+        ({"truth": "igrf"}, 'did you mean "IGRF-14"|known'),
+        ({"field_scale": 0.0}, "field_scale must be a number"),
         ({"inclination_deg": -1.0}, "inclination_deg must be a number"),
         ({"inclination_deg": 10.0, "step_s": 1.0}, "Take a longer step"),
     ],

@@ -120,7 +120,8 @@ def flown(
 
 def _law(controller, state_weight, place, field_scale, disturbance_s, free: bool) -> tuple[str, dict]:
     """The plant's law and its parameters."""
-    common = {"place_h_m": place.tolist(), "disturbance_s": disturbance_s, "filter_s": 0.0, "unreachable": "fly" if free else "refuse"}
+    common = {"place_h_m": place.tolist(), "disturbance_s": disturbance_s, "filter_s": 0.0}
+    common["unreachable"] = "fly" if free else "refuse"
     if controller in ("frozen", "turning"):
         believed = frozen_field_h(circle(ALTITUDE_M), FIELD_ANGLE_DEG) / field_scale
         own = {

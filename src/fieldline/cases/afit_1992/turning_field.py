@@ -3,8 +3,11 @@
     dx/dt = (F - G(t) K(t)) x,   x(t + T) = X(T) x(t),   stable if every eigenvalue of X(T) is inside the unit circle
 
 Three gains: "frozen", K of one instant (33 degrees over the equator) kept for good, as in appendix E; "scheduled", the
-regulator of each instant; "periodic", the regulator of the periodic system (an equatorial orbit, where the field's angle
-closes in 2 pi/(n - we)). The field is the thesis's dipole, the commands zero, the state known.
+regulator of each instant; "periodic", the regulator of the periodic system: over an equator in the time 2 pi/(n - we) in
+which the field's angle closes, elsewhere over a sidereal day, in which the orbit is taken to go round a whole number of
+times (16 instead of 15.5). The commands are zero, the state is known.
+
+The gains are made for the thesis's dipole. The truth may be another: the field times a factor, or IGRF-14.
 
 Over the equator all are stable. At the design's own 28.5 degrees the frozen gain of the standoff is not: in a day its
 state grows by e^79; the limit is between 14 and 17 degrees.
@@ -21,11 +24,14 @@ from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LONGITUDE_DEG, SOUR
 from fieldline.cases.afit_1992.frozen_model import built, frozen_plant
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.erbs_like import number
-from fieldline.control.electrodynamic import Plant
+from fieldline.control.electrodynamic import Plant, electrodynamic_map
 from fieldline.control.periodic_system import exponentials
+from fieldline.environment.orbit_field import field_on_orbit_h
 from fieldline.errors import InputError, nearest, shown
+from fieldline.mechanics.relative_motion import input_matrix
 
 CONTROLLERS = ("frozen", "scheduled", "periodic")
+TRUTHS = ("dipole", "IGRF-14")
 MOST_STEPS = 20_000
 
 
@@ -38,6 +44,8 @@ def turning_field(
     duration_s: float | None = None,
     step_s: float = 20.0,
     altitude_m: float = ALTITUDE_M,
+    field_scale: float = 1.0,
+    truth: str = "dipole",
 ):
     """The transition of a closed loop over a turn of the field, or over a sidereal day, as a Dataset over `seconds`.
 
@@ -47,6 +55,7 @@ def turning_field(
     inclination_deg : of the orbit; argument, node and Greenwich's angle are zero at the start.
     field_angle_deg : at which the frozen gain was made.      step_s : about; the duration is cut into equal steps.
     duration_s : a turn of the field's angle over the equator, a sidereal day elsewhere.
+    field_scale : the true field over the one that the gains are made for.      truth : "dipole" or "IGRF-14" (1992).
 
     Returns
     -------
@@ -54,41 +63,59 @@ def turning_field(
     largest multiplier over the duration (negative: stable); unstable_share, of the time with growth; gain_norm.
     """
     settings = dict(locals())
-    for name, value, known in (("case", case, APPROACHES), ("controller", controller, CONTROLLERS)):
+    for name, value, known in (("case", case, APPROACHES), ("controller", controller, CONTROLLERS), ("truth", truth, TRUTHS)):
         if not isinstance(value, str) or value not in known:
             raise InputError(f'{name} "{shown(str(value))}" is unknown; {nearest(str(value), known)}')
     number("field_angle_deg", field_angle_deg, -1e6, 1e6)
     orbit = circle(altitude_m)
     turn = 2.0 * np.pi / (orbit.mean_motion_rad_s - SPIN_RAD_S)
     level = number("inclination_deg", inclination_deg, 0.0, 180.0) == 0.0
-    if controller == "periodic" and not (level and duration_s is None):
-        raise InputError(
-            'controller = "periodic" needs an equatorial orbit and its own turn; give neither inclination nor duration.'
-        )
+    if controller == "periodic" and duration_s is not None:
+        raise InputError('controller = "periodic" has a period of its own; leave duration_s out.')
+    number("field_scale", field_scale, 0.01, 100.0)
     length = number("duration_s", (turn if level else 2.0 * np.pi / SPIN_RAD_S) if duration_s is None else duration_s, 1.0, 1e7)
     count = int(np.ceil(length / number("step_s", step_s, 0.1, 600.0)))
     if count > MOST_STEPS:
         raise InputError(f"{length:g} s in steps of {step_s:g} are {count:,}; at most {MOST_STEPS:,}. Take a longer step.")
     halves = np.linspace(0.0, length, 2 * count + 1)
-    plant, gains = _loop(case, controller, orbit, halves, inclination_deg, field_angle_deg)
-    return _dataset(plant, gains, orbit, halves, settings)
+    whole_turns = controller == "periodic" and not level
+    turning = round(orbit.mean_motion_rad_s / SPIN_RAD_S) * SPIN_RAD_S if whole_turns else orbit.mean_motion_rad_s
+    plant, gains = _loop(case, controller, orbit, halves, turning, inclination_deg, field_angle_deg)
+    return _dataset(_true_plant(plant, case, orbit, halves, turning, settings), gains, orbit, halves, settings)
 
 
-def _loop(case, controller, orbit: Circle, halves, inclination_deg, field_angle_deg) -> tuple[Plant, np.ndarray]:
-    """The plant at nodes and midpoints, (2 N + 1, 12, m), and gains there, or one."""
+def _true_plant(plant: Plant, case, orbit: Circle, halves, turning: float, settings: dict) -> Plant:
+    """The plant in the true field."""
+    own, scale = APPROACHES[case], settings["field_scale"]
+    made = built({"vertical_m": own.towers_m[0], "horizontal_m": own.towers_m[1], "arms": "centre"})
+    inputs = plant.G
+    if settings["truth"] == "IGRF-14":
+        node, inclination = -SPIN_RAD_S * halves, np.radians(settings["inclination_deg"])
+        field_h = field_on_orbit_h(orbit.radius_m, inclination, turning * halves, node, np.datetime64("1992-12-01"))
+        inputs = input_matrix(made.mass_kg, made.inertia_kg_m2, electrodynamic_map(made, field_h))
+    wires = len(made.conductors)
+    return plant._replace(G=np.concatenate([scale * inputs[..., :wires], inputs[..., wires:]], axis=-1))
+
+
+def _loop(case, controller, orbit: Circle, halves, turning, inclination_deg, field_angle_deg) -> tuple[Plant, np.ndarray]:
+    """The plant that is believed at nodes and midpoints, (2 N + 1, 12, m), and gains there, or one."""
     own = APPROACHES[case]
     made = built({"vertical_m": own.towers_m[0], "horizontal_m": own.towers_m[1], "arms": "centre"})
     node = -np.degrees(SPIN_RAD_S * halves) - POLE_LONGITUDE_DEG
-    angle = np.degrees(orbit.mean_motion_rad_s * halves) + node
+    angle = np.degrees(turning * halves) + node
     plant, _ = frozen_plant(made, orbit, angle, inclination_deg, node)
     if controller == "frozen":
         here, _ = frozen_plant(made, orbit, field_angle_deg)
         return plant, regulator_of(here, orbit, own.state_weight).gain
     if controller == "scheduled":
         return plant, np.array([regulator_of(plant._replace(G=g), orbit, own.state_weight).gain for g in plant.G])
-    weights = np.diag(own.state_weight * np.repeat([1.0, orbit.radius_m], 6))
-    gains = periodic_regulator(plant.F, plant.G[:-1], weights, np.eye(plant.G.shape[-1]), halves[-1], control="continuous")
-    return plant, np.concatenate([gains["gain"].values, gains["gain"].values[:1]])
+    n = orbit.mean_motion_rad_s
+    scale = orbital_scale(n)
+    weights = np.diag(own.state_weight * np.repeat([1.0, orbit.radius_m], 6) * scale * scale)
+    F, G = plant.F * scale / scale[:, None] / n, plant.G[:-1] / scale[:, None] / n
+    found = periodic_regulator(F, G, weights, np.eye(G.shape[-1]), n * halves[-1], control="continuous")
+    gains = found["gain"].values / scale
+    return plant, np.concatenate([gains, gains[:1]])
 
 
 def log_multiplier(closed: np.ndarray, step_s: float) -> float:
