@@ -26,6 +26,7 @@ from fieldline.telemetry.stream import Rows
 
 METHODS = ("bandpass", "harmonic", "kalman")
 LENGTH_M = (1.0, 1e6)
+STEADY_S = (1.0, 1e6)
 FREQUENCY_HZ = (1e-5, 10.0)
 FASTEST_AVERAGED_HZ = 0.06  # a quicker cone keeps all of its samples
 FEWEST = 30
@@ -39,7 +40,7 @@ LARGEST_SHARE = 0.3  # of the field's size
 @dataclass(frozen=True, kw_only=True)
 class SkipropeSettings:
     """What an estimate is told. frequency_hz None: found from the spectrum. calibration: "none", "auto", "bias", "full",
-    or a Calibration. use_yaw: whether a measured yaw is used.
+    or a Calibration. use_yaw: whether a measured yaw is used. steady_s: over which the ellipse is steady.
     """
 
     tether_length_m: float
@@ -50,11 +51,14 @@ class SkipropeSettings:
     plane: Any = "field"
     calibration: Any = "none"
     use_yaw: bool = True
+    steady_s: float | None = None
 
     def __post_init__(self):
         _check_number("tether_length_m", self.tether_length_m, LENGTH_M, "m")
         if self.frequency_hz is not None:
             _check_number("frequency_hz", self.frequency_hz, FREQUENCY_HZ, "Hz")
+        if self.steady_s is not None:
+            _check_number("steady_s", self.steady_s, STEADY_S, "s")
         if self.method not in METHODS:
             raise InputError(f'method "{self.method}" is not known; {nearest(str(self.method), METHODS)}')
         if not isinstance(self.calibration, Calibration) and self.calibration not in ("none", "auto", "bias", "full"):
@@ -77,6 +81,7 @@ class SkipropeSettings:
             "plane": plane_of(self.plane).word,
             "calibration": calibration,
             "use_yaw": self.use_yaw,
+            "steady_s": None if self.steady_s is None else float(self.steady_s),
             **self.mounting.described(),
         }
 
@@ -136,6 +141,7 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
         frequency_hz=settings.frequency_hz,
         method=settings.method,
         yaw_rad=np.zeros(len(signals.seconds)) if yaw_used else None,  # the measured one is taken out already
+        memory_s=settings.steady_s,
     )
     if settings.frequency_hz is None and not estimate.detected:
         remarks += _below_the_band(signals)
