@@ -51,15 +51,31 @@ CIRCUITS = {
 }
 
 
-def flight_of(circuit=None, heat=HEAT, air="layered", seconds=0.01, output=None, step=0.01, **rope):
-    """Two points on a bent line of three nodes, 420 km up, flown for a moment so that the line has looked around."""
+SIDE = {
+    "name": "side",
+    "from_body": "low",
+    "to_body": "aside",
+    "rest_length_m": 600.0,
+    "nodes": 2,
+    "stiffness_n": 5000.0,
+    "mass_per_length_kg_m": 0.004,
+    "diameter_m": 0.01,
+    "drag_coefficient": 0.0,
+    "heat": HEAT,
+}  # a line before the one that is looked at: three segments, warm, nothing else
+
+
+def flight_of(circuit=None, heat=HEAT, air="layered", seconds=0.01, output=None, step=0.01, alone=False, **rope):
+    """Points on a bent line of three nodes, 420 km up, and on another one, flown for a moment so that they have looked around."""
     environment = {"gravity": "point", "atmosphere": {"model": air}, "plasma": {"model": "chapman"}}
     line = ROPE | {key: value for key, value in (("circuit", circuit), ("heat", heat)) if value} | rope
     flight = pf.Flight(
         pf.scenario(
             pf.body("low", kind="point", mass_kg=60.0),
             pf.body("high", kind="point", mass_kg=40.0, offset_o_m=(150.0, -90.0, -1996.0), offset_rate_o_m_s=(0.3, 0.2, 0.1)),
-            line=[line], environment=environment, seconds=seconds, output=output, integrator={"step_s": step},
+            pf.body("aside", kind="point", mass_kg=5.0, offset_o_m=(0.0, 20.0, 599.0)),
+            line=[line] if alone else [SIDE, line], environment=environment,
+            seconds=seconds, output=output, integrator={"step_s": step},
             orbit={"elements": {"altitude_km": 420.0, "inclination_deg": 40.0, "true_anomaly_deg": 70.0}},
         )
     )  # fmt: skip
@@ -74,9 +90,16 @@ def flight_of(circuit=None, heat=HEAT, air="layered", seconds=0.01, output=None,
 
 def points(y, flight, ahead=0.0):
     """(5, 3) places [m] and velocities [m/s] of the line's points, moved ahead at their speeds."""
-    nodes = starts_in_state(flight.plant)[0]
+    nodes = starts_in_state(flight.plant)[0] + 12
     rows = np.vstack([y[0:6], y[nodes : nodes + 18].reshape(3, 6), y[13:19]])
     return rows[:, :3] + ahead * rows[:, 3:], rows[:, 3:]
+
+
+def held_by(flight):
+    """What is held around the rope alone."""
+    held = flight.shared.ambient
+    each = {name: getattr(held, name)[3:] for name in held._fields[: held._fields.index("emf")]}
+    return held._replace(**each, **{name: getattr(held, name)[1:] for name in ("emf", "power", "lorentz_i", "drag_i")})
 
 
 class Around:
@@ -143,7 +166,7 @@ def expected_current(name, around, flight):
 @pytest.mark.parametrize("name", CIRCUITS)
 def test_surroundings_and_currents(name):
     flight = flight_of(CIRCUITS[name])
-    held, around = flight.shared.ambient, Around(flight)
+    held, around = held_by(flight), Around(flight)
     assert held.field_i == pytest.approx(around.field, rel=1e-7, abs=1e-14)
     assert held.density == pytest.approx(around.air, rel=1e-9)
     assert held.electrons == pytest.approx(around.electrons, rel=1e-9)
@@ -166,7 +189,7 @@ def test_surroundings_and_currents(name):
 def test_forces_on_nodes_and_ends_and_temperatures():
     """What air and current add to the rates: half of each segment's load on either of its ends, over that end's mass."""
     flight, still = flight_of(CIRCUITS["bare"]), flight_of(None, air="none")
-    held = flight.shared.ambient
+    held = held_by(flight)
     y = flight.start
     rate, _ = pf.rates(flight, 0.4, y)
     plain, _ = pf.rates(still, 0.4, y)
@@ -181,9 +204,9 @@ def test_forces_on_nodes_and_ends_and_temperatures():
     load[1:] += 0.5 * force
     change = rate - plain
     mass = 0.004 * 500.0
-    assert change[3:6] == pytest.approx(load[0] / (60.0 + 0.5 * mass), rel=1e-5)
+    assert change[3:6] == pytest.approx(load[0] / (60.0 + 0.5 * mass + 0.5 * 0.004 * 200.0), rel=1e-5)
     assert change[15:18] == pytest.approx(load[4] / (40.0 + 0.5 * mass), rel=1e-5)
-    first = starts_in_state(flight.plant)[0] - 2
+    first = starts_in_state(flight.plant)[0] - 3 + 12
     nodes = change[first : first + 18].reshape(3, 6)[:, 3:]
     assert nodes == pytest.approx(load[1:4] / mass, rel=1e-4, abs=1e-8)
     cooled = np.pi * 0.012 * 0.7 * STEFAN_BOLTZMANN_W_M2_K4 * 263.0**4
@@ -195,22 +218,22 @@ def test_length_follows_temperature():
     flight = flight_of(None, air="none")
     y = flight.start.copy()
     pf.rates(flight, 0.0, y)
-    cold = flight.shared.tension.copy()
+    cold = flight.shared.tension[3:].copy()
     y[-4:] += 30.0
     pf.rates(flight, 0.0, y)
-    taut = (cold > 0.0) & (flight.shared.tension > 0.0)
+    warm = flight.shared.tension[3:]
+    taut = (cold > 0.0) & (warm > 0.0)
     assert taut.any()
     stretched = np.linalg.norm(np.diff(points(y, flight)[0], axis=0), axis=1)[taut]
     change = 5000.0 * stretched / 500.0 * (1.0 / (1.0 + 2e-5 * (263.0 - 293.15)) - 1.0 / (1.0 + 2e-5 * (293.0 - 293.15)))
-    assert (cold - flight.shared.tension)[taut] == pytest.approx(change, rel=0.02)  # the rest: damping, over a longer line
+    assert (cold - warm)[taut] == pytest.approx(change, rel=0.02)  # the rest: damping, over a longer line
 
 
 def test_electric_power_is_what_the_motion_loses():
     """About a point mass, E - omega . L of everything falls by the integral of emf I alone, where the plasma turns at omega."""
     profile = {"mode": "profile", "current_a": 1.5}
-    flight = flight_of(
-        profile, heat=None, air="none", seconds=200.0, output=2.0, nodes=0, mass_per_length_kg_m=0.0, damping_n_s=0.0
-    )
+    bare = {"nodes": 0, "mass_per_length_kg_m": 0.0, "damping_n_s": 0.0}
+    flight = flight_of(profile, heat=None, air="none", seconds=100.0, output=2.0, step=0.5, alone=True, **bare)
     data = dataset_of(flight)
     pole = dcm_ei(flight.scenario.time.start)[2]
 
@@ -246,3 +269,25 @@ def test_a_law_switches_the_current():
     current = dataset_of(flight)["current_rope"].values[:, 0]
     assert current[0] == 0.0 and current.max() == pytest.approx(0.15)
     assert np.all(np.diff(current) >= 0.0) and len(np.unique(np.round(current, 9))) > 2
+
+
+def test_a_line_that_is_paid_out_keeps_its_current_and_its_warmth():
+    """Nodes that appear look around at once: no segment that is out is without field, resistance or heat."""
+    series = WIRE | {"mode": "series", "load_ohm": 100.0}
+    reel = {"total_length_m": 2600.0, "rate_m_s": 8.0, "lag_s": 1.0}
+    environment = {"gravity": "point", "atmosphere": {"model": "layered"}}
+    flight = pf.flown(
+        pf.body("low", kind="point", mass_kg=60.0),
+        pf.body("high", kind="point", mass_kg=400.0, offset_o_m=(0.0, 0.0, -2001.0), offset_rate_o_m_s=(0.0, 0.0, -8.0)),
+        line=[ROPE | {"heat": HEAT, "circuit": series, "reel": reel, "nodes": 12}],
+        environment=environment, seconds=60.0, output=0.5, integrator={"step_s": 0.05, "line_update_s": 10.0},
+    )  # fmt: skip
+    assert flight.outcome.name == "DONE"
+    data = dataset_of(flight)
+    current, warmth = data["current_rope"].values, data["temperature_rope"].values
+    out = np.isfinite(current)
+    assert out.sum(axis=1)[0] == 10 and out.sum(axis=1)[-1] == 12  # segments of 200 m
+    assert current[out].min() > 0.5 and np.abs(np.diff(np.nanmean(current, axis=1))).max() < 0.03
+    assert np.array_equal(np.isfinite(warmth), out) and 220.0 < np.nanmin(warmth) < np.nanmax(warmth) < 330.0
+    rate = np.abs(np.diff(np.nanmean(warmth, axis=1))) / 0.5
+    assert rate.max() < 2.0 * np.median(rate) + 0.2
