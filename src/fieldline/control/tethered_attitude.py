@@ -14,7 +14,8 @@ the tension, which is measured. What makes the torque N [N m]:
     thrusters   u = |N_x| U_x(+-) + |N_y| U_y(+-) + |N_z| U_z(+-), U the least firings for 1 N m            (59)
     attachment  moved by s: T s x f = N across f, s = (2 z / w_p) d (w x f)                                 (60)
 
-A moved attachment cannot turn the body about the line. Below `tension_min_n` the line is taken for slack: the pendulum's
+A moved attachment cannot turn the body about the line. Where attitude or orbit is not known w is the rate against inertial
+axes, and the orbit's turn makes the body lean by 2 z n / w_p. Below `tension_min_n` the line is taken for slack: the pendulum's
 damping is then that of the least tension, and an attachment goes to its middle.
 
 Source: SAO (1982), section 4, names the four means; the laws are own derivation. Valid for small swings and a line much

@@ -141,7 +141,12 @@ def test_a_node_vanishes_in_the_plant(rest, point):
 LONG = ROPE | {"stiffness_n": 2e4, "damping_n_s": 4e3, "mass_per_length_kg_m": 0.002, "rest_length_m": 2200.0}
 
 
-def hung(length, rate, reel, nodes=5, mass_per_length=0.002, seconds=800.0, **tables):
+def hung(*numbers, **tables):
+    """A flight of `paid_out`."""
+    return pf.Flight(paid_out(*numbers, **tables))
+
+
+def paid_out(length, rate, reel, nodes=5, mass_per_length=0.002, seconds=800.0, **tables):
     """Points on a taut line that is reeled at a rate from the start; output every step of 0.2 s."""
     line = LONG | {"rest_length_m": length, "nodes": nodes, "mass_per_length_kg_m": mass_per_length}
     line["reel"] = {"total_length_m": 6000.0, "rate_m_s": rate, "lag_s": 1.0} | reel
@@ -155,7 +160,7 @@ def hung(length, rate, reel, nodes=5, mass_per_length=0.002, seconds=800.0, **ta
     probe = pf.body("probe", mass_kg=80.0, kind="point", offset_o_m=place, offset_rate_o_m_s=speed)
     integrator = {"method": "rk4", "step_s": 0.2}
     tables = {"output": 0.2, "integrator": integrator, "environment": {"gravity": "point"}} | tables
-    return pf.Flight(pf.scenario(ship, probe, line=[line], seconds=seconds, **tables))
+    return pf.scenario(ship, probe, line=[line], seconds=seconds, **tables)
 
 
 def ends(flight):
@@ -261,3 +266,57 @@ def test_a_reel_at_its_end_ends_the_run_and_keeps_it(length, rate, words):
     data = dataset_of(flight)
     assert data.attrs["complete"] == 0 and words in data.attrs["outcome"] and "reel-profile" in data.attrs["outcome"]
     assert 40 < data.sizes["time"] < 200
+
+
+HEAT = {
+    "absorptivity": 0.5,
+    "emissivity": 0.8,
+    "specific_heat_j_kg_k": 1000.0,
+    "expansion_1_k": 2e-5,
+    "start_temperature_k": 320.0,
+}
+
+
+def test_a_warm_line_comes_and_goes_with_its_warmth():
+    """Pieces of one temperature share their strain; two temperatures mix by the lengths."""
+    line = ROPE | {"heat": HEAT, "diameter_m": 0.002}
+    flight = disturbed(3, 151.0, line, point=True)
+    _, feeds, warm = starts_in_state(flight.plant)
+    out = int(flight.plant.lines.nodes[0])
+    flight.y[warm : warm + out + 2] = [300.0 + 10.0 * j for j in range(out + 1)] + [200.0]
+    grown = 1.0 + 2e-5 * (flight.y[warm + out] - flight.plant.lines.reference[0])
+    before = strains(flight, out, grown)
+    assert reeled(0.0, flight.run) == 0
+    assert flight.y[warm + out + 1] == flight.y[warm + out]
+    assert strains(flight, out, grown) == pytest.approx(before, abs=1e-9)
+    assert strains(flight, out + 1, grown) == pytest.approx(before, abs=1e-9)
+    flight.y[feeds], flight.y[warm + out + 1] = 39.0, 260.0
+    mixed = (100.0 * flight.y[warm + out] + 39.0 * 260.0) / 139.0
+    assert reeled(0.0, flight.run) == 0 and flight.plant.lines.nodes[0] == out
+    assert flight.y[warm + out] == pytest.approx(mixed, rel=1e-12)
+
+
+def strains(flight, j, grown):
+    """Strain of segment j of a line between points, grown by its warmth."""
+    nodes, feeds, _ = starts_in_state(flight.plant)
+    out = int(flight.plant.lines.nodes[0])
+    points = [Account.end(flight, 0)[0], *flight.y[nodes : nodes + 6 * out].reshape(-1, 6)[:, :3], Account.end(flight, 1)[0]]
+    rest = flight.y[feeds] if j == out else flight.plant.lines.rest[j]
+    return float(np.linalg.norm(points[j + 1] - points[j])) / (rest * grown) - 1.0
+
+
+def test_a_law_of_the_users_own_works_the_reel(tmp_path):
+    """It sees tension, length and rate of the line, and stops the reel at a length."""
+    (tmp_path / "own.py").write_text(
+        "def law(t, measurement, memory, params):\n"
+        "    assert measurement.tension.shape == measurement.line_rate.shape == (1,)\n"
+        "    return [params[0] if measurement.line_length[0] < params[1] else 0.0]\n"
+    )
+    task = {"body": "ship", "law": "own.py:law", "commands": ["reel"], "compiled": False, "rate_hz": 1.0}
+    task["parameters"] = {"rate": 0.8, "until": 2300.0}
+    scenario = paid_out(2200.0, 0.5, {}, seconds=300.0, output=10.0, software=[task])
+    flight = pf.Flight(pf.Scenario.from_toml(scenario.to_toml(), folder=tmp_path))
+    flight.fly()
+    assert flight.complete
+    _, length = lean_of(flight)
+    assert 2300.0 < length[-1] < 2303.0 and flight.record.actuators[: len(length), 0].max() == 0.8
