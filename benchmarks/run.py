@@ -17,6 +17,7 @@ from pathlib import Path
 
 import field
 import filter as kalman
+import line
 import plant
 import skiprope
 from measure import machine, timed, wall
@@ -55,6 +56,11 @@ def skiprope_chapter() -> list[str]:
     return skiprope.chapter(markdown)
 
 
+def line_chapter() -> list[str]:
+    """Lines with nodes against C and MoorDyn, and the implicit method against the explicit one."""
+    return line.chapter(markdown)
+
+
 def import_s() -> float:
     """[s] that `import fieldline` takes in a fresh interpreter, the interpreter's own start taken off; best of five."""
     bare = min(wall(sys.executable, "-c", "pass") for _ in range(5))
@@ -85,8 +91,8 @@ def scaling_chapter() -> list[str]:
         )
         found.append(json.loads(done.stdout))
     rows = [("samples", *(f"{stage} [s]" for stage in found[0]["seconds"]), "peak memory [MB]")]
-    for line in found:
-        rows.append((f"{line['samples']:,}", *(f"{s:.3g}" for s in line["seconds"].values()), f"{line['peak_mb']:.0f}"))
+    for one in found:
+        rows.append((f"{one['samples']:,}", *(f"{s:.3g}" for s in one["seconds"].values()), f"{one['peak_mb']:.0f}"))
     text = (
         "Reading a CSV, choosing and fitting the calibration, and one pass of filter and smoother over the whole record; each "
         "length in a process of its own. Hoped for: linear, memory bounded. The libraries alone take some 250 MB."
