@@ -79,7 +79,7 @@ PERIODIC = {
 
 @pytest.mark.parametrize(("case", "inclination"), PERIODIC)
 def test_gains_over_the_day_are_stable_at_every_inclination(case, inclination):
-    found = turning_field(case, "periodic", inclination, step_s=120.0)
+    found = turning_field(case, "periodic", inclination, step_s=60.0)
     assert float(found["log_multiplier"]) == pytest.approx(PERIODIC[case, inclination], abs=0.2)
     if inclination > 70.0:
         assert float(found["gain_norm"].max()) > 30.0 * float(found["gain_norm"].median())  # peaks that need limits
