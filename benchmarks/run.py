@@ -19,6 +19,7 @@ import field
 import filter as kalman
 import line
 import plant
+import tracking
 import skiprope
 from measure import machine, timed, wall
 
@@ -59,6 +60,11 @@ def skiprope_chapter() -> list[str]:
 def line_chapter() -> list[str]:
     """Lines with nodes against C and MoorDyn, and the implicit method against the explicit one."""
     return line.chapter(markdown)
+
+
+def tracking_chapter() -> list[str]:
+    """Flight by current against SciPy and python-control."""
+    return tracking.chapter(markdown)
 
 
 def import_s() -> float:
@@ -103,7 +109,16 @@ def scaling_chapter() -> list[str]:
 def page() -> str:
     """The whole page."""
     chapters = [
-        chapter() for chapter in (start_chapter, field_chapter, filter_chapter, skiprope_chapter, plant_chapter, scaling_chapter)
+        chapter()
+        for chapter in (
+            start_chapter,
+            field_chapter,
+            filter_chapter,
+            skiprope_chapter,
+            plant_chapter,
+            tracking_chapter,
+            scaling_chapter,
+        )
     ]
     head = [
         "# Benchmarks",
