@@ -19,8 +19,8 @@ import field
 import filter as kalman
 import line
 import plant
-import tracking
 import skiprope
+import tracking
 from measure import machine, timed, wall
 
 LENGTHS = (1_000, 10_000, 100_000, 1_000_000)
