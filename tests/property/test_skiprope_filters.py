@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fieldline.cases.tp3123 import fly, random_scenario
+from fieldline.cases.tp3123.flight import dcm_321, field_along_orbit
 from fieldline.errors import InputError
 from fieldline.estimation.skiprope import (
     KalmanSettings,
@@ -210,3 +211,32 @@ def test_refusals():
     with pytest.raises(InputError, match="no state"):
         LiveSkiprope.resumed(state | {"memory": np.zeros(3)})
     assert bandpass_step.SIZE != kalman_step.SIZE
+
+
+def test_a_tether_on_the_reel_is_tracked():
+    """Frequency from 4 to 7.5 mHz and three times the size in 7,000 s, the field known wrongly: live and offline."""
+    seconds = np.arange(7000.0)
+    share = seconds / seconds[-1]
+    hz, size = 0.004 * 1.875**share, np.radians(0.3) * 3.0**share
+    phase = TURN * np.cumsum(hz)
+    swing = np.radians(2.0) * np.sin(TURN * SWING_HZ * seconds + 0.8)
+    angles = np.stack([size * np.cos(phase) + swing, 0.7 * size * np.sin(phase) + swing, 0.05 + 0.0 * seconds], axis=1)
+    true = field_vector(field_along_orbit(seconds, "IGRF-14"))
+    known = field_vector(field_along_orbit(seconds, "displaced-dipoles"))
+    field = np.einsum("nij,nj->ni", dcm_321(angles), true) + 2e-8 * np.random.default_rng(0).standard_normal((7000, 3))
+    found = estimate_skiprope(
+        skiprope_signals(seconds, field, known), tether_length_m=LENGTH, method="kalman", reeled=True, step_s=20.0
+    )
+    rows = found.seconds > 1500.0
+    at = found.seconds[rows].astype(int)
+    assert found.trusted[rows].all() and (found.sense[rows] == 1).all()
+    assert np.sqrt(np.mean((found.frequency_hz[rows] / hz[at] - 1.0) ** 2)) < 0.03
+    assert np.sqrt(np.mean((found.amplitude_rad[rows] / (0.85 * size[at]) - 1.0) ** 2)) < 0.03
+    off = np.angle(np.exp(1j * (found.phase_rad[rows] - phase[at])))
+    assert np.degrees(np.sqrt(np.mean(off**2))) < 8.0
+    live = LiveSkiprope(tether_length_m=LENGTH, reeled=True)
+    for k, t in enumerate(seconds):
+        now = live.update(t, field[k], known[k])
+    assert now.trusted and now.frequency_hz == pytest.approx(hz[-1], rel=0.03)
+    with pytest.raises(InputError, match="kalman"):
+        estimate_skiprope(skiprope_signals(seconds, field, known), tether_length_m=LENGTH, reeled=True)

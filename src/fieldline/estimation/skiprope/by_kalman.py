@@ -69,6 +69,9 @@ class KalmanSettings:
         return np.array([values[name] for name in PARAMETERS])
 
 
+REELED = KalmanSettings(frequency_rad_s32=3e-5, cone_rad_s12=3e-5)  # a tether on the reel: 0.15 mHz and 0.05 deg in 1,000 s
+
+
 def reading_noise(signals: SkipropeSignals, otherwise: float) -> float:
     """[T] white noise of a reading by fourth differences of even samples, the largest left out; `otherwise` of few samples."""
     steps = np.diff(signals.seconds)
@@ -80,11 +83,12 @@ def reading_noise(signals: SkipropeSignals, otherwise: float) -> float:
     return max(float(np.sqrt(np.mean(size[: int(KEPT * len(size))] ** 2) / 70.0)), 1e-10)
 
 
-def kalman_track(signals: SkipropeSignals, rows, settings, usual: KalmanSettings = KalmanSettings()) -> Track:
+def kalman_track(signals: SkipropeSignals, rows, settings) -> Track:
     """Phasors at times `rows` (m,) [s]; see `estimate.Settings`."""
     fastest = max((settings.frequency_hz, *settings.pendulous_hz))
     thin = signals.thinned(1.0 / (SAMPLES_PER_PERIOD * fastest))
     swing = settings.pendulous_hz[0] if settings.pendulous_hz else None
+    usual = REELED if settings.reeled else KalmanSettings()
     usual = replace(usual, noise_tesla=reading_noise(thin, usual.noise_tesla))
     params = usual.packed(settings.frequency_hz, swing)
     memory, memories = np.zeros(SIZE), np.zeros((len(rows), SIZE))

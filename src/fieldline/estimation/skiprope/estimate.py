@@ -43,6 +43,7 @@ NEAR = 0.3  # of a given frequency, in which its line is looked for
 WORST_FIELD_RAD = np.radians(40.0)
 ROWS_PER_PERIOD = 20
 BINS = 100  # in a period of the band's upper end: fine enough for motions five times as fast
+REELED_S = 1500.0  # in which the first frequency of a tether on the reel is sought
 SURE = 0.5  # largest standard deviation of a trusted amplitude, of the amplitude
 
 
@@ -57,6 +58,7 @@ class Settings(NamedTuple):
     rule: str
     knowledge: FieldKnowledge
     yaw_measured: bool
+    reeled: bool
 
 
 def estimate_skiprope(
@@ -74,6 +76,7 @@ def estimate_skiprope(
     rule: str = "paper",
     memory_s: float | None = None,
     step_s: float | None = None,
+    reeled: bool = False,
 ) -> SkipropeEstimate:
     """The skiprope over the record's time.
 
@@ -90,6 +93,8 @@ def estimate_skiprope(
     damping, rule : of the bandpass; "paper" takes the field's azimuth now, "corrected" when the filter heard it, and uses
         a measured yaw.
     memory_s : [s] over which the ellipse is steady (ten periods).
+    reeled : the tether is paid out or taken in, so that size and frequency run (Kalman filter alone): the first frequency is
+        sought in the record's first 25 minutes, and the filter lets both run.
     step_s : [s] between the rows of the answer (a twentieth of a period).
 
     Returns
@@ -100,19 +105,22 @@ def estimate_skiprope(
         raise InputError(f"method: {nearest(str(method), METHODS)} Got {method!r}.")
     if rule not in RULES:
         raise InputError(f"rule must be one of {', '.join(RULES)}; got {rule!r}.")
+    if reeled and method != "kalman":
+        raise InputError(f'a tether on the reel needs method="kalman", which lets the frequency run; got {method!r}.')
     length = positive("tether_length_m", tether_length_m)
     measured = yaw_rad is not None
     yaw = _yaw(yaw_rad, signals)
     turned = signals.turned(yaw) if measured else signals
     coarse = turned.thinned(1.0 / (BINS * max(band_hz[1], frequency_hz or 0.0)))
     off_rad = _disagreement(coarse)
-    found = detect(coarse, band_hz=_band(frequency_hz, band_hz), false_alarm=false_alarm)
+    sought = coarse.between(coarse.seconds[0], coarse.seconds[0] + REELED_S) if reeled else coarse
+    found = detect(sought, band_hz=_band(frequency_hz, band_hz), false_alarm=false_alarm)
     line = found.cone if frequency_hz is None else _line_near(found, positive("frequency_hz", frequency_hz))
     found = found._replace(cone=line, others=tuple(other for other in found.lines if other is not line))
     if line is None:
         return _nothing(method, length, found, signals)
     settings = Settings(
-        line.frequency_hz, found.resolution_hz, _pendulous(found, line), damping, memory_s, rule, knowledge, measured
+        line.frequency_hz, found.resolution_hz, _pendulous(found, line), damping, memory_s, rule, knowledge, measured, reeled
     )
     rows = _rows(signals, line.frequency_hz, step_s)
     track = TRACKS[method](turned if method == "bandpass" else coarse, rows, settings)

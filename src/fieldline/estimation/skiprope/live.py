@@ -27,8 +27,8 @@ import numpy as np
 from fieldline.errors import InputError, NoEstimateError, nearest
 from fieldline.estimation.skiprope import bandpass_step, kalman_step
 from fieldline.estimation.skiprope.bandpass import positive
-from fieldline.estimation.skiprope.by_kalman import LOST, SETTLED, KalmanSettings
-from fieldline.estimation.skiprope.estimate import MEASURED_YAW_STD_RAD, NEAR, RULES, USUAL, YAW_STD_RAD
+from fieldline.estimation.skiprope.by_kalman import LOST, REELED, SETTLED, KalmanSettings
+from fieldline.estimation.skiprope.estimate import MEASURED_YAW_STD_RAD, NEAR, REELED_S, RULES, USUAL, YAW_STD_RAD
 from fieldline.estimation.skiprope.numbers import NUMBERS, cone_numbers
 from fieldline.estimation.skiprope.reading import FieldKnowledge
 from fieldline.estimation.skiprope.rotary import BAND_HZ, Detection, detect
@@ -85,12 +85,12 @@ class LiveSkiprope:
         self, *, tether_length_m: float, method: str = "kalman", frequency_hz: float | None = None,
         pendulous_hz: float | None = None, yaw_std_rad: float | None = None, yaw_measured: bool = False,
         knowledge: FieldKnowledge = USUAL, band_hz: tuple[float, float] = BAND_HZ, false_alarm: float = 0.01,
-        damping: float = 0.1, rule: str = "paper", check_s: float = CHECK_S,
+        damping: float = 0.1, rule: str = "paper", check_s: float = CHECK_S, reeled: bool = False,
     ):  # fmt: skip
         """Nothing heard yet. Arguments as those of `estimate_skiprope`.
 
         frequency_hz, pendulous_hz : first frequencies [Hz]; searched for by default. yaw_measured : `update` will be given the
-        yaw [rad]. check_s : between two searches.
+        yaw [rad]. check_s : between two searches. reeled : searches hear the last 25 minutes alone.
         """
         if method not in LIVE_METHODS:
             raise InputError(f"method: {nearest(str(method), LIVE_METHODS)} Got {method!r}.")
@@ -108,6 +108,7 @@ class LiveSkiprope:
             "false_alarm": false_alarm,
             "damping": damping,
             "rule": rule,
+            "reeled": bool(reeled),
             "check_s": positive("check_s", check_s),
         }
         self._kalman = method == "kalman"
@@ -236,7 +237,8 @@ class LiveSkiprope:
         head, given = self._head, self._settings["frequency_hz"]
         head["next_check_s"] = seconds + self._settings["check_s"]
         rows = self._kept()
-        rows = rows[rows[:, 0] >= seconds - head["first_s"] - BUFFER_S]
+        kept_s = REELED_S if self._settings["reeled"] else BUFFER_S
+        rows = rows[rows[:, 0] >= seconds - head["first_s"] - kept_s]
         low, high = self._settings["band_hz"]
         band = (low, high) if given is None else (min(low, (1.0 - NEAR) * given), max(high, (1.0 + NEAR) * given))
         try:
@@ -270,7 +272,7 @@ class LiveSkiprope:
         """The filter's parameters, from the frequencies."""
         settings = self._settings
         if self._kalman:
-            self._params[:] = KalmanSettings().packed(frequency_hz, pendulous_hz)
+            self._params[:] = (REELED if settings["reeled"] else KalmanSettings()).packed(frequency_hz, pendulous_hz)
         else:
             corrected = settings["rule"] == "corrected"
             self._params[:] = (frequency_hz, settings["damping"], corrected, corrected and settings["yaw_measured"])
