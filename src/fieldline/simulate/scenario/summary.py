@@ -67,6 +67,8 @@ def _surroundings(environment) -> Iterator[str]:
     degree = f" to degree {environment.gravity_degree or 20}" if environment.gravity == "harmonic" else ""
     yield f"gravity {environment.gravity}{degree}"
     yield f"air {environment.atmosphere.model}"
+    if environment.plasma.model != "none":
+        yield f"plasma {environment.plasma.model}"
 
 
 def _integrator(scenario, length_s: float) -> str:
@@ -151,10 +153,17 @@ def _sensors(body) -> Iterator[str]:
         yield f"torquers on for {body.duty_cycle.torque_on_s:g} of every {body.duty_cycle.period_s:g} s"
 
 
+def _of_line(line) -> str:
+    """What a line has besides length and stiffness."""
+    circuit = f"{line.circuit.mode} circuit" if line.circuit else ""
+    parts = [f"{line.nodes} nodes" if line.nodes else "", "reel" if line.reel else "", "heat" if line.heat else "", circuit]
+    return "".join(f", {part}" for part in parts if part)
+
+
 def _rest(scenario) -> Iterator[tuple[str, str]]:
     """Lines, software, events."""
     for line in scenario.line:
-        yield "line", f"{line.from_body} to {line.to_body}: {line.rest_length_m:g} m, {line.stiffness_n:g} N"
+        yield "line", f"{line.from_body} to {line.to_body}: {line.rest_length_m:g} m, {line.stiffness_n:g} N{_of_line(line)}"
     for task in scenario.software:
         body = scenario.body[scenario.index_of(task.body)].name
         given = ", ".join(f"{key} = {value}" for key, value in task.parameters.items()) or "parameters derived or default"
