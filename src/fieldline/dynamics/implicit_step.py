@@ -5,11 +5,12 @@
 with x the state z in axes that fall and turn with the lines (`turning_axes`) and A what tension depends on, over the
 nodes and the bodies at the ends of lines (`stiff_system`). The method keeps its order 3 with any A, so that field, air,
 wheels, rods, currents, temperatures and the user's loads need no derivative. Its error estimate allows a velocity what
-moves its place by the allowed error of a place within the step,
+moves its place by the allowed error of a place within the step, or within some seconds where the step is shorter,
 
-    allowed_v = max(allowed_v, allowed_x / h),      the same for angular rate and angle, feed rate and feed          (2)
+    allowed_v = max(allowed_v, allowed_x / max(h, h_0)),   the same for angular rate and angle, feed rate and feed   (2)
 
-so that an oscillation along the line too fast for the step, which the method damps, does not shorten it.
+so that an oscillation along the line too fast for the step, which the method damps, does not shorten it. Without h_0 the
+short steps of a snap would let speeds be wrong that slack parts then keep.
 
 Within the step a place is the cubic of Hermite of both ends, and what the fall c(t) of its axes, of degree 5, departs from
 its own cubic; the velocity is the derivative of that. The accelerations of a stiff line are no help there. In the form of
@@ -34,6 +35,7 @@ from fieldline.integrate.rosenbrock import sum_stages
 STAGES = 4
 OPENING, CLOSING = STAGES, STAGES + 1  # rows of k for the rates at the step's start and end
 EVALUATIONS = STAGES + 2
+PLACES_S, ANGLES_S = 10.0, 1.0  # h_0 of equation (2): of a line's swing, of a body's pendulum on it
 
 
 @inner
@@ -80,19 +82,19 @@ def attempt_implicit(t, h, y, plant, inputs, loads, call, shared, work):
 def allow_motion(h, plant, scale):
     """Equation (2) on the allowed errors of a step."""
     for b in range(plant.bodies.mass.shape[0]):
-        widen(h, TANGENT * b, 3, scale)
-        widen(h, TANGENT * b + 6, 3, scale)
+        widen(max(h, PLACES_S), TANGENT * b, 3, scale)
+        widen(max(h, ANGLES_S), TANGENT * b + 6, 3, scale)
     for k in range(plant.lines.nodes.shape[0]):
         for i in range(plant.lines.nodes[k]):
-            widen(h, nodes_at(plant) + 6 * (plant.lines.first[k] + i), 3, scale)
-        widen(h, feeds_at(plant) + 2 * k, 1, scale)
+            widen(max(h, PLACES_S), nodes_at(plant) + 6 * (plant.lines.first[k] + i), 3, scale)
+        widen(max(h, PLACES_S), feeds_at(plant) + 2 * k, 1, scale)
 
 
 @inner
-def widen(h, at, count, scale):
+def widen(seconds, at, count, scale):
     """Equation (2) for so many numbers from `at` on, whose rates follow them."""
     for j in range(at, at + count):
-        scale[j + count] = max(scale[j + count], scale[j] / h)
+        scale[j + count] = max(scale[j + count], scale[j] / seconds)
 
 
 @inner
