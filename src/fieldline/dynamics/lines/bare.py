@@ -19,7 +19,7 @@ quotient of differences of its integral,
 
 also where V passes zero. Newton's method on (4) and (3) by one sweep: dI = P dV + q is carried from the anode, with P
 never negative since f rises, then dV comes back from the cathode. It holds for long lines too, where V and R' I - E are
-zero over kilometres and shooting from either end fails. The cells' error is of second order: 1e-4 of the current for 64.
+zero over kilometres and shooting from either end fails. The cells' error is of second order: 5e-4 of the current for 64.
 
 Source: Sanmartin, Martinez-Sanchez and Ahedo (1993), J. Propul. Power 9(3), 353. Valid for d below the Debye length (some
 4 mm by day) and tapes up to four times that; the speed through the plasma raises the real current, by an unsettled factor.
