@@ -59,24 +59,25 @@
         return [0, 1, 2].map(a => (1 - s) * ends[a] + s * ends[3 + a] + magnify * off[3 * j + a]);
       });
       const largest = Math.max(...points.map((_, j) => Math.hypot(off[3 * j], off[3 * j + 1], off[3 * j + 2])));
-      const chord = Math.hypot(ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]);
-      return { line, points, largest, chord, tension: between(line.tension, line.points - 1, now), angles: between(line.angles, 2, now) };
+      return { line, points, largest, tension: between(line.tension, line.points - 1, now), angles: between(line.angles, 2, now) };
     });
     const bodies = run.bodies.map(body => ({ ...body, q: body.turn ? between(body.turn, 4, now) : null }));
-    const all = lines.flatMap(one => one.points), follow = control("follow").checked;
-    const reach = follow ? Math.max(...lines.map(one => one.chord)) : run.longest;
+    const all = lines.flatMap(one => one.points), ends = lines.flatMap(one => [one.points[0], one.points.at(-1)]);
+    const apart = Math.max(...ends.flatMap(p => ends.map(q => Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]))));
+    const reach = control("follow").checked ? apart : run.longest;
     const middle = [0, 1, 2].map(a => { const v = all.map(p => p[a]); return 0.5 * (Math.min(...v) + Math.max(...v)); });
     return { lines, bodies, reach, middle };
   };
 
-  const drawBody = (pen, body, at, lever, axis) => {
+  // A body at the end of a line or of several: `held` has the attachments in pixels, each with its lever's direction.
+  const drawBody = (pen, body, held, axis) => {
     const flat = v => [v[axis], v[2]]; // right, down
     const turned = v => flat(body.q ? rotate(body.q, v) : v);
-    const arm = body.q ? turned(lever) : [0, 0];
-    const [cx, cy] = [at[0] - LEVER * arm[0], at[1] - LEVER * arm[1]];
+    const centres = held.map(({ at, lever }) => { const arm = body.q ? turned(lever) : [0, 0]; return at.map((x, j) => x - LEVER * arm[j]); });
+    const [cx, cy] = [0, 1].map(j => centres.reduce((sum, c) => sum + c[j], 0) / centres.length);
     pen.lineWidth = 1.2; pen.strokeStyle = colours.ink; pen.fillStyle = colours.panel;
     if (!body.q) { pen.beginPath(); pen.arc(cx, cy, 5, 0, 7); pen.fill(); pen.stroke(); return [cx, cy]; }
-    pen.beginPath(); pen.moveTo(cx, cy); pen.lineTo(...at); pen.stroke();
+    for (const { at } of held) { pen.beginPath(); pen.moveTo(cx, cy); pen.lineTo(...at); pen.stroke(); }
     const corner = k => { const [u, v] = turned([0, 1, 2].map(a => (k >> a) & 1 ? HALF : -HALF)); return [cx + u, cy + v]; };
     for (let k = 0; k < 8; k++) for (let a = 0; a < 3; a++) if (!((k >> a) & 1)) {
       pen.beginPath(); pen.moveTo(...corner(k)); pen.lineTo(...corner(k | (1 << a))); pen.stroke();
@@ -107,18 +108,20 @@
     pen.strokeStyle = colours.faint; pen.lineWidth = 1; pen.setLineDash([]);
     const [x0] = put([0, 0, 0]); // the local vertical
     pen.beginPath(); pen.moveTo(x0, 0); pen.lineTo(x0, height); pen.stroke();
-    for (const { line, points, tension } of now.lines) {
+    for (const { points, tension } of now.lines) {
       tension.forEach((pull, j) => {
         pen.setLineDash(pull > 0 ? [] : [4, 4]); pen.lineWidth = pull > 0 ? 2.4 : 1.4;
         pen.strokeStyle = pull > 0 ? tint(pull / run.tension) : colours.grey;
         pen.beginPath(); pen.moveTo(...put(points[j])); pen.lineTo(...put(points[j + 1])); pen.stroke();
       });
       pen.setLineDash([]);
-      line.bodies.forEach((b, end) => {
-        const [x, y] = drawBody(pen, now.bodies[b], put(points[end ? points.length - 1 : 0]), line.levers[end], axis);
-        pen.fillStyle = colours.ink; pen.fillText(now.bodies[b].name, x + 24, y + 4);
-      });
     }
+    now.bodies.forEach((body, b) => {
+      const held = now.lines.flatMap(({ line, points }) =>
+        [0, 1].filter(end => line.bodies[end] === b).map(end => ({ at: put(points.at(-end)), lever: line.levers[end] })));
+      const [x, y] = drawBody(pen, body, held, axis);
+      pen.fillStyle = colours.ink; pen.fillText(body.name, x + 24, y + 4);
+    });
     pen.fillStyle = colours.soft; pen.textAlign = "right";
     pen.fillText(axis === 0 ? "flight →" : "against the orbit normal →", width - 8, 14); pen.textAlign = "left";
     pen.fillText("↓ Earth", 8, 14);
@@ -142,7 +145,7 @@
 
   const step = time => {
     if (!playing) return;
-    const passed = Math.min(0.1, (time - before) / 1000), whole = +control("speed").value;
+    const passed = Math.min(0.1, Math.max(0, time - before) / 1000), whole = +control("speed").value;
     before = time; held += passed;
     if (!still.matches || held >= 0.5) { // where motion is to be reduced: two still pictures a second
       share += (still.matches ? held : passed) / whole; held = 0;

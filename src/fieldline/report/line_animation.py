@@ -75,7 +75,7 @@ def _data(record: RunRecord, lines: list[LineRecord]) -> dict[str, Any]:
         "clock": {"unit_s": record.clock.unit_s, "label": record.clock.label},
         "magnify": _round_down(max(1.0, SHOWN_BOW * float(np.median(lengths)) / bow)) if bow > 1e-6 * lengths.max() else 1,
         "follow": bool(lengths.max() > FOLLOWED * lengths.min()),
-        "longest": float(lengths.max()),
+        "longest": _reach(lines, kept),
         "tension": max(float(np.nanmax(line.tension)) for line in lines),
         "bodies": [_body(record, b, kept, turn) for b in touched],
         "lines": [_line(line, kept, turn, centre, touched) for line in lines],
@@ -90,6 +90,12 @@ def _centre(line: LineRecord, kept: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     masses = [run.scenario.body[b].mass_kg for b in ends]
     place, velocity = (np.average(run.values(key)[kept][:, ends], axis=1, weights=masses) for key in ("position_i", "velocity_i"))
     return dcm_oi(place, velocity), place
+
+
+def _reach(lines: list[LineRecord], kept: np.ndarray) -> float:
+    """[m] largest distance between any two ends of lines at any of the frames."""
+    ends = np.concatenate([line.run.values(POSITION + line.name)[kept][:, [0, -1]] for line in lines], axis=1)
+    return max(float(np.linalg.norm(ends - ends[:, k : k + 1], axis=2).max()) for k in range(ends.shape[1]))
 
 
 def _line(line: LineRecord, kept: np.ndarray, turn: np.ndarray, centre: np.ndarray, touched: list[int]) -> dict[str, Any]:
