@@ -11,9 +11,21 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from fieldline.cases.afit_1992 import controllability, field, lost_field, lqr, turning_field, vehicle
+from fieldline.cases.afit_1992 import (
+    controllability,
+    docking_standards,
+    field,
+    flown,
+    linear_range,
+    lost_field,
+    lqr,
+    orbit_change,
+    turning_field,
+    vehicle,
+)
 from fieldline.cases.afit_1992.field_in_orbit import INCLINATIONS_DEG
 from fieldline.report.afit_1992_figures import MICROTESLA, lost_figure, lqr_figure, powers, vehicle_figure
+from fieldline.report.case_figure import case_figure
 from fieldline.report.series import legend, line
 from fieldline.report.theme import AXIS_COLOURS, GREY, INK, label_outer, panels, themed, write_png
 
@@ -119,3 +131,10 @@ if __name__ == "__main__":
             save(lqr_figure(lqr(case)), case.replace("-", "_"))
         stepping()
         inclined()
+    for name, found in (
+        ("flown", flown("standoff", "frozen", 28.5, duration_s=22_000.0)),
+        ("linear_range", linear_range()),
+        ("docking", docking_standards(100)),
+        ("orbit_change", orbit_change(days=2.0, flown_days=2.0)),
+    ):
+        save(case_figure(found), name)

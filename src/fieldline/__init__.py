@@ -33,6 +33,8 @@ _HOMES = {
     "estimate_skiprope": "fieldline.estimation.skiprope_telemetry",
     "write_report": "fieldline.report",
     "electrodynamic_map": "fieldline.control.electrodynamic",
+    "allocate": "fieldline.control.tracking.allocation",
+    "approach": "fieldline.simulate.approach",
     "simulate": "fieldline.simulate",
     "simulate_many": "fieldline.simulate",
     "line_shape": "fieldline.simulate.line_shape",
@@ -63,6 +65,8 @@ __all__ = [
     "estimate_skiprope",
     "write_report",
     "electrodynamic_map",
+    "allocate",
+    "approach",
     "simulate",
     "simulate_many",
     "Normal",
@@ -79,6 +83,7 @@ __all__ = [
 if TYPE_CHECKING:
     from fieldline.analysis.tether import tether_modes
     from fieldline.control.electrodynamic import electrodynamic_map
+    from fieldline.control.tracking.allocation import allocate
     from fieldline.environment import eclipse, field_gradient, field_model, magnetic_field, sun_direction_i
     from fieldline.errors import FieldlineError, InputError, NoEstimateError
     from fieldline.estimation import estimate_attitude
@@ -87,6 +92,7 @@ if TYPE_CHECKING:
     from fieldline.estimation.skiprope_telemetry import estimate_skiprope
     from fieldline.orbit import orbit_from_positions, read_orbit
     from fieldline.report import write_report
+    from fieldline.simulate.approach import approach
     from fieldline.simulate.ensemble import Choice, Normal, Uniform, simulate_many
     from fieldline.simulate.line_shape import line_shape
     from fieldline.simulate.run import simulate

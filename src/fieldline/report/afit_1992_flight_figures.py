@@ -85,7 +85,7 @@ def change_figure(dataset: Any) -> Any:
     line(axes[0, 0], days, dataset["altitude_m"].values / 1e3, AXIS_COLOURS[0], "averaged", width=1.2)
     line(axes[1, 0], days, dataset["inclination_deg"].values, AXIS_COLOURS[0], "averaged", width=1.2)
     axes[0, 0].set_ylabel("height [km]")
-    axes[1, 0].set_ylabel("inclination [deg]")
+    axes[1, 0].set_title("inclination [deg]")
     axes[0, 0].set_title(f"{dataset.attrs['title']}; {float(dataset['energy_j']) / 3.6e6:.4g} kWh")
     for panel in axes[:, 0]:
         panel.set_xlim(days[0], days[-1])
