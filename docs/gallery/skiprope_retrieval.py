@@ -104,6 +104,15 @@ def follow(sent, seconds, length_m, method: str) -> np.ndarray:
     return np.array(rows)
 
 
+def follow_reeled(sent) -> np.ndarray:
+    """The same rows by the Kalman filter that lets the frequency run, told nothing of the reel, over the whole record."""
+    import fieldline as fl
+
+    found = fl.estimate_skiprope(sent, tether_length_m=1.0, method="kalman", reeled=True)
+    at = (found.time.values - sent.time_utc[0]).astype(np.int64) * 1e-9
+    return np.column_stack([at, found.position_m.values, found.frequency_hz.values, found.trusted.values])
+
+
 def about_its_mean(place, seconds, frequency_hz) -> np.ndarray:
     """Places (n, 2) less their mean over the turn about each: taking in bows the line ahead, and that is no skiprope."""
     width = np.interp(seconds, *frequency_hz) ** -1.0
@@ -118,8 +127,8 @@ def main() -> None:
     seconds, length = seconds_of(run), run.deployed_length_tether.values
     sent = telemetry(run)
     drawn = {}
-    for method in ("harmonic", "kalman"):
-        rows = follow(sent, seconds, length, method)
+    for method in ("harmonic", "kalman", "reeled"):
+        rows = follow_reeled(sent) if method == "reeled" else follow(sent, seconds, length, method)
         swing = about_its_mean(place, seconds, (rows[:, 0], rows[:, 3]))
         found = rows[:, 1:3] * np.interp(rows[:, 0], seconds, length)[:, None]
         true = np.stack([np.interp(rows[:, 0], seconds, column) for column in swing.T], axis=-1)

@@ -65,6 +65,9 @@ def skiprope(
         float | None,
         typer.Option(help="Harmonic: how long the cone keeps its ellipse; ten periods by default.", show_default=False),
     ] = None,
+    reeled: Annotated[
+        bool, typer.Option("--reeled", help="Kalman: the tether is paid out or taken in; its frequency runs.")
+    ] = False,
     ignore_yaw: Annotated[bool, typer.Option("--ignore-yaw", help="Leave a yaw column of the telemetry aside.")] = False,
     model: options.Model = "IGRF-14",
     calibration: Annotated[str, typer.Option(help="none, auto, bias, full, or a FILE of `fieldline calibrate`.")] = "none",
@@ -109,6 +112,7 @@ def skiprope(
         "tether_length_m": tether_length_m, "frequency_hz": frequency_hz, "method": method, "model": model, "plane": plane,
         "sensor_axes": sensor_axes, "attitude_deg": three_angles(attitude_deg), "tether": tether, "use_yaw": not ignore_yaw,
         "steady_s": steady_s,
+        "reeled": reeled,
     }  # fmt: skip
     live = follow or str(telemetry) == STREAM
     only = {"--state": state, "--every-s": every_s, "--memory-s": memory_s, "--stop-after-s": stop_after_s}

@@ -33,6 +33,7 @@ def estimate_skiprope(
     calibration="none",
     use_yaw: bool = True,
     steady_s: float | None = None,
+    reeled: bool = False,
     progress: Callable[[str, float, float, str], None] | None = None,
 ):
     """Skiprope of a tethered satellite from its magnetometer: amplitude, frequency, sense, plane, each with an uncertainty.
@@ -49,6 +50,7 @@ def estimate_skiprope(
     plane : "field", "orbit", "normal" or an azimuth [deg] from the orbit's normal towards the rear, whose crossings are asked.
     calibration : "none", "auto", "bias", "full", or a Calibration.      use_yaw : use the telemetry's yaw where it has one.
     steady_s : over which the cone keeps its ellipse [s], for "harmonic"; ten periods by default. Shorter for a tether of 20 km.
+    reeled : the tether is paid out or taken in, so that its frequency runs; for "kalman". Deflections are of the given length.
     progress : called with (stage, done, total, words).
 
     Returns
@@ -63,7 +65,7 @@ def estimate_skiprope(
     settings = SkipropeSettings(
         tether_length_m=tether_length_m, frequency_hz=frequency_hz, method=method, model=model,
         mounting=Mounting(sensor_axes=sensor_axes, attitude_deg=attitude_deg, tether=tether), plane=plane,
-        calibration=calibration, use_yaw=use_yaw, steady_s=steady_s,
+        calibration=calibration, use_yaw=use_yaw, steady_s=steady_s, reeled=reeled,
     )  # fmt: skip
     rows = rows_of(telemetry)
     if settings.averages and comes_fast(rows.time_utc):

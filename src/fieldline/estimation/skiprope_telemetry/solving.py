@@ -41,6 +41,7 @@ LARGEST_SHARE = 0.3  # of the field's size
 class SkipropeSettings:
     """What an estimate is told. frequency_hz None: found from the spectrum. calibration: "none", "auto", "bias", "full",
     or a Calibration. use_yaw: whether a measured yaw is used. steady_s: over which the ellipse is steady.
+    reeled: the tether is paid out or taken in, and its frequency runs (kalman).
     """
 
     tether_length_m: float
@@ -52,6 +53,7 @@ class SkipropeSettings:
     calibration: Any = "none"
     use_yaw: bool = True
     steady_s: float | None = None
+    reeled: bool = False
 
     def __post_init__(self):
         _check_number("tether_length_m", self.tether_length_m, LENGTH_M, "m")
@@ -63,6 +65,8 @@ class SkipropeSettings:
             raise InputError(f'method "{self.method}" is not known; {nearest(str(self.method), METHODS)}')
         if not isinstance(self.calibration, Calibration) and self.calibration not in ("none", "auto", "bias", "full"):
             raise InputError(f"calibration must be none, auto, bias, full or a Calibration; got {self.calibration!r}.")
+        if self.reeled and self.method != "kalman":
+            raise InputError(f'reeled, a frequency that runs, needs method "kalman"; got "{self.method}".')
         plane_of(self.plane)
 
     @property
@@ -81,6 +85,7 @@ class SkipropeSettings:
             "plane": plane_of(self.plane).word,
             "calibration": calibration,
             "use_yaw": self.use_yaw,
+            "reeled": self.reeled,
             "steady_s": None if self.steady_s is None else float(self.steady_s),
             **self.mounting.described(),
         }
@@ -142,6 +147,7 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
         method=settings.method,
         yaw_rad=np.zeros(len(signals.seconds)) if yaw_used else None,  # the measured one is taken out already
         memory_s=settings.steady_s,
+        reeled=settings.reeled,
     )
     if settings.frequency_hz is None and not estimate.detected:
         remarks += _below_the_band(signals)
