@@ -24,16 +24,36 @@ GROW_MOST = 6.0
 
 @njit(cache=True)
 def combine(z, h, k, weights, count, out):
-    """z + h times the weighted sum of the first `count` rows of k, into out; zero weights cost nothing (1)."""
-    for i in range(z.size):
-        out[i] = 0.0
-    for j in range(count):
+    """z + h times the weighted sum of the first `count` rows of k, into out; zero weights cost nothing (1).
+
+    One pass a weight: the first one begins the sum and the last one ends it.
+    """
+    last = count - 1
+    while last >= 0 and weights[last] == 0.0:
+        last -= 1
+    if last < 0:
+        for i in range(z.size):
+            out[i] = z[i]
+        return
+    begun = False
+    for j in range(last):
         w = weights[j]
-        if w != 0.0:
+        if w == 0.0:
+            continue
+        if begun:
             for i in range(z.size):
                 out[i] += w * k[j, i]
-    for i in range(z.size):
-        out[i] = z[i] + h * out[i]
+        else:
+            for i in range(z.size):
+                out[i] = w * k[j, i]
+        begun = True
+    w = weights[last]
+    if begun:
+        for i in range(z.size):
+            out[i] = z[i] + h * (out[i] + w * k[last, i])
+    else:
+        for i in range(z.size):
+            out[i] = z[i] + h * (w * k[last, i])
 
 
 @njit(cache=True)
