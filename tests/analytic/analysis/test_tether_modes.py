@@ -165,9 +165,9 @@ def test_between_heavy_bodies_it_is_the_string_of_slowly_varying_tension():
 def test_any_bodies_at_the_ends(ends):
     """Nodes come to the continuum; half waves are counted by changes of sign."""
     line = (20e3, 8.35e-3, 3.2e5, *ends, 220e3)
-    whole, nodes = fl.tether_modes(*line), fl.tether_modes(*line, 60)
+    whole, nodes = fl.tether_modes(*line), fl.tether_modes(*line, 30)
     for name in ("in_plane_frequency", "out_of_plane_frequency", "along_line_frequency"):
-        assert np.allclose(nodes[name].values[:4], whole[name].values[:4], rtol=1e-2)
+        assert np.allclose(nodes[name].values[:4], whole[name].values[:4], rtol=4e-2)
     for k, shape in enumerate(whole.out_of_plane_shape.values[:8]):
         assert (np.diff(np.sign(shape)) != 0).sum() == k + 1
 
@@ -181,9 +181,9 @@ def test_a_free_end_is_a_string_whose_tension_goes_to_zero():
 
 def test_two_materials():
     line = ([12e3, 8e3], [8.35e-3, 4e-3], [3.2e5, 1e5], *LINE[3:])
-    whole, nodes = fl.tether_modes(*line), fl.tether_modes(*line, 119)
-    assert np.allclose(nodes.out_of_plane_frequency.values[:4], whole.out_of_plane_frequency.values[:4], rtol=6e-4)
-    assert np.allclose(nodes.along_line_frequency.values[:4], whole.along_line_frequency.values[:4], rtol=6e-4)
+    whole, nodes = fl.tether_modes(*line), fl.tether_modes(*line, 49)
+    assert np.allclose(nodes.out_of_plane_frequency.values[:4], whole.out_of_plane_frequency.values[:4], rtol=4e-3)
+    assert np.allclose(nodes.along_line_frequency.values[:4], whole.along_line_frequency.values[:4], rtol=4e-3)
     assert not np.isclose(whole.along_line_frequency.values[0], fl.tether_modes(*LINE).along_line_frequency.values[0], rtol=0.1)
 
 

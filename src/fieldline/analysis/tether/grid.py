@@ -20,7 +20,7 @@ import numpy as np
 
 from fieldline.analysis.tether.strand import Strand, Stretches, point_masses
 
-DEGREE = 64  # of the polynomials of a continuum: thirteen half waves to eleven digits
+DEGREE, DEGREE_OF_SEVERAL = 40, 28  # of the polynomials of a continuum: thirteen half waves to nine digits or more
 
 
 class Grid(NamedTuple):
@@ -44,10 +44,11 @@ def chain_grid(strand: Strand, lower_kg: float, upper_kg: float) -> Grid:
     return Grid(place, point_masses(strand, lower_kg, upper_kg), middle, strand.rest, strand.stiffness, slope)
 
 
-def continuum_grid(stretches: Stretches, lower_kg: float, upper_kg: float, degree: int = DEGREE) -> Grid:
-    """One polynomial of a degree for each material."""
-    x, w, d = lobatto(degree)
+def continuum_grid(stretches: Stretches, lower_kg: float, upper_kg: float) -> Grid:
+    """One polynomial for each material."""
     count = len(stretches.length)
+    degree = DEGREE if count == 1 else DEGREE_OF_SEVERAL
+    x, w, d = lobatto(degree)
     points = degree * count + 1
     place, mass = np.zeros(points), np.zeros(points)
     station, weight, slope = [], [], np.zeros((count * (degree + 1), points))

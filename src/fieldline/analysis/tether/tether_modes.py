@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST_NODES = 500  # the cost grows with the cube: 500 nodes take a quarter of a minute
-SHOWN = 13  # modes of each family that are told of a continuum: those that its polynomials hold to eleven digits
+SHOWN = 13  # modes of each family that are told of a continuum: those that its polynomials hold to nine digits or more
 LENGTHS = ("unstretched", "stretched")
 
 
