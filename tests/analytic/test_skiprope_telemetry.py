@@ -190,6 +190,8 @@ def test_sixteen_a_second_say_the_same():
         ({"attitude_deg": (0.0, 5.0)}, "roll, pitch, yaw"),
         ({"tether": "sideways"}, '"down" or "up"'),
         ({"calibration": "best"}, "calibration must be none, auto, bias, full"),
+        ({"steady_s": 0.0}, "steady_s must be a number"),
+        ({"reeled": True}, 'needs method "kalman"; got "harmonic"'),
     ],
 )
 def test_arguments_are_refused_in_words(given, words):
@@ -239,6 +241,14 @@ def test_without_a_skiprope_the_answer_is_that_there_is_none(method):
     assert found.attrs["usable"] == 0 and verdict["exit_code"] == 1 and not verdict["detected"]
     assert found.sizes["time"] == 0 and "no skiprope" in found.attrs["verdict"].lower()
     assert 0.0 < verdict["threshold_deg"] < 0.2 and verdict["false_alarm"] == 0.01
+
+
+def test_a_skiprope_below_the_band_is_hinted_at_and_found_when_asked_for():
+    record = flight(3000, 2.0, skiprope_frequency_hz=0.0016)
+    blind = json.loads(estimate(record).attrs["verdict_json"])
+    assert not blind["detected"] and "say --frequency-hz 0.0016" in blind["warnings"][-1]
+    asked = estimate(record, frequency_hz=0.0016)
+    assert np.degrees(asked.amplitude_rad.values[-1]) == pytest.approx(0.6, rel=0.1)
 
 
 def test_planes_by_word_and_number():
