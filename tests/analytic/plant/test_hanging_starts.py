@@ -93,6 +93,20 @@ def test_an_unbalanced_body_keeps_its_orbit():
     assert np.linalg.norm(fl.simulate(scenario()).velocity_i.values[0, 0]) > free + 0.05  # the whole turns faster than that
 
 
+@pytest.mark.parametrize("reel_on", ["carrier", "hanging"])
+def test_a_reel_that_turns_already_jolts_nothing(reel_on):
+    """At 0.5 m/s from the first moment on: neither the line nor the feed has to catch up."""
+    line = {"reel": {"total_length_m": 21e3, "rate_m_s": 0.5}}
+    if reel_on == "hanging":
+        line |= {"from_body": "above", "to_body": "below", "from_point_b_m": [0.0, 0.0, 2.0], "to_point_b_m": [0.0, 0.0, -1.0]}
+    told = fl.simulate(scenario(line=line, seconds=120.0))
+    still = fl.simulate(scenario(line=line | {"reel": {"total_length_m": 21e3}}, seconds=120.0))
+    assert told.deployed_length_tether.values[-1] == pytest.approx(20060.0, abs=0.5)
+    # what fed line adds by itself: Coriolis force across, inertia of what leaves, and 3 n^2 m dL
+    near, far = told.tension_tether.values[:, 0], still.tension_tether.values[:, 0]
+    assert np.abs(near - far).max() < 0.1
+
+
 def test_three_bodies_on_two_lines():
     third = {"name": "third", "kind": "point", "mass_kg": 100.0, "hang": {}}
     second = LONG | {"name": "second", "from_body": "third", "to_body": "below", "rest_length_m": 5e3, "nodes": 3}

@@ -59,7 +59,7 @@ def hang_bodies(scenario, y: np.ndarray) -> dict[int, object]:
         if body.hang.balanced and carrier.hang is None and carrier.name not in balanced:
             row_a[3:6] += _balance(state, row_a)
             balanced.add(carrier.name)
-        speeds = row_a[3:6] + swing_a + state.velocity_i - state.velocity_i[0]
+        speeds = row_a[3:6] + swing_a + state.velocity_i - state.velocity_i[0] + _paid_out(scenario.line[k], mine, state)
         lever_b, swing_b = _lever(scenario, k, mine, row_b)
         row_b[:3], row_b[3:6] = state.position_i[-1] - lever_b, speeds[-1] - swing_b
         moved = state._replace(velocity_i=speeds)
@@ -104,6 +104,19 @@ def _taut(scenario, body, position_i, velocity_i):
         )
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
+
+
+def _paid_out(line, mine: str, state) -> np.ndarray:
+    """(points, 3) [m/s] from the carrier on: what a reel that turns already adds to the velocities.
+
+    A reel on the carrier moves all of the line and the body away from it; one on the body, the body alone.
+    """
+    added = np.zeros_like(state.velocity_i)
+    if line.reel is not None:
+        chord = state.position_i[-1] - state.position_i[0]
+        moving = slice(1, None) if mine == "from" else slice(-1, None)
+        added[moving] = line.reel.rate_m_s * chord / np.linalg.norm(chord)
+    return added
 
 
 def _balance(state, row_a: np.ndarray) -> np.ndarray:

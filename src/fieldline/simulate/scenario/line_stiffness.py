@@ -58,6 +58,6 @@ def too_stiff(scenario, k: int) -> str | None:
     if step <= most:
         return None
     return (
-        f"is too stiff for rk4 at {step:g} s: it oscillates along itself at up to {rate:.3g} rad/s, damping included the step may "
-        f'be {most:.2g} s. Use step_s = {0.9 * most:.1g}, or method = "rosenbrock", whose step the stiffness does not bind'
+        f"is too stiff for rk4 at {step:g} s: it oscillates along itself at up to {rate:.3g} rad/s, damping included the step "
+        f'may be {most:.2g} s. Use step_s = {0.9 * most:.1g}, or method = "rosenbrock", whose step the stiffness does not bind'
     )
