@@ -48,7 +48,6 @@ def model_flight(seed: int, params, count: int = 1500):
     return states, known, fields
 
 
-@pytest.mark.kernels
 def test_the_covariance_is_that_of_the_errors():
     """Twelve flights of the model itself: squared errors of cone and frequency over the covariance average five, those of the
     innovations two, each within four deviations of the mean; nothing is passed over."""
@@ -87,6 +86,30 @@ def test_derivatives_are_those_of_the_direction():
 
 
 @pytest.mark.kernels
+def test_kernels_take_samples_and_refuse_others():
+    """A hundred samples 10 s apart: the covariance stays symmetric, positive and shrinks; what is no sample changes nothing."""
+    one = random_scenario(9000, duration_s=1000.0, rate_hz=0.1)
+    known = field_vector(one.signals.geometry)
+    params = KalmanSettings().packed(HZ, None)
+    memory, other = np.zeros(kalman_step.SIZE), np.zeros(bandpass_step.SIZE)
+    rules = np.array([HZ, 0.5, 1.0, 0.0])
+    for k, t in enumerate(one.signals.seconds):
+        row = (t, one.signals.field_b[k], known[k])
+        kalman_step.kalman_update(*row, memory, params)
+        assert bandpass_step.bandpass_update(*row, other, rules)
+        before = memory.copy(), other.copy()
+        for bad in ((t, *row[1:]), (t - 5.0, *row[1:]), (t + 5.0, np.full(3, np.nan), row[2]), (np.nan, *row[1:])):
+            assert not kalman_step.kalman_update(*bad, memory, params)
+            assert not bandpass_step.bandpass_update(*bad, other, rules)
+        assert np.array_equal(memory, before[0]) and np.array_equal(other, before[1], equal_nan=True)
+    spread = kalman_step.covariance_of(memory)
+    assert np.array_equal(spread, spread.T) and (np.linalg.eigvalsh(spread) > -1e-18).all()
+    assert np.trace(spread[6:10, 6:10]) < 4.0 * 0.03**2
+    part, covariance = np.empty(4), np.empty((4, 4))
+    assert bandpass_step.bandpass_phasor(1000.0, other, rules, part, covariance) in (-1, 0, 1)
+    assert np.isfinite(part).all() and (np.linalg.eigvalsh(covariance) > -1e-12).all()
+
+
 @pytest.mark.parametrize("method", LIVE_METHODS)
 def test_a_resumed_stream_goes_on_bit_for_bit(method):
     one = random_scenario(9001, duration_s=2600.0)
@@ -167,7 +190,6 @@ def test_silence_is_not_reported_as_motion():
         assert np.degrees(live.threshold_rad) < 0.02 and live.detection.cone is None
 
 
-@pytest.mark.kernels
 def test_no_estimator_beats_the_bound_and_two_come_near():
     """Ten records with the field known exactly and 100 nT: errors between 0.8 and 2.5 times the bound."""
     axes = np.radians((0.75, 0.5))
