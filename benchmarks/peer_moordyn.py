@@ -36,7 +36,7 @@ RK4 tScheme
 """
 
 
-def segments_per_second(nodes: int, seconds: float = 2.0, rounds: int = 5) -> float:
+def segments_per_second(nodes: int, seconds: float = 0.05, rounds: int = 60) -> float:
     """Evaluations of a segment a second, four a step, of the best of several stretches of flight."""
     import moordyn
 
