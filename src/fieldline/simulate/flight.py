@@ -142,7 +142,7 @@ def stepping_of(scenario, plant, duration_s: float) -> Stepping:
     integrator = scenario.integrator
     adaptive = integrator.method != "rk4"
     absolute = np.full(tangent_size(plant), integrator.rate_tolerance_rad_s)
-    allowed = [integrator.position_tolerance_m] * 3 + [integrator.velocity_tolerance_m_s] * 3
+    allowed = [integrator.position_allowed_m] * 3 + [integrator.velocity_tolerance_m_s] * 3
     allowed += [integrator.angle_allowed_rad] * 3 + [integrator.rate_tolerance_rad_s] * 3
     bodies = len(plant.bodies.mass)
     for b in range(bodies):
@@ -155,7 +155,7 @@ def stepping_of(scenario, plant, duration_s: float) -> Stepping:
         tableau=DOP853 if adaptive else RK4,
         adaptive=adaptive,
         step=(integrator.step_max_s or 1e9) if adaptive else integrator.step_s,
-        relative=integrator.relative_tolerance,
+        relative=integrator.relative_allowed,
         absolute=absolute,
         end=duration_s,
         floor=FLOOR_M,

@@ -23,11 +23,15 @@ class Integrator(Record):
     step_max_s: float | None = Field(
         default=None, gt=0.0, description="largest step of dop853 and rosenbrock [s]; no limit by default"
     )
-    relative_tolerance: float = Field(
-        default=1e-9, ge=1e-14, le=1e-2, description="error of a step over the state, dop853 and rosenbrock [-]"
+    relative_tolerance: float | None = Field(
+        default=None,
+        ge=1e-14,
+        le=1e-2,
+        description="error of a step over the state, which holds the distance from the Earth's centre; by default 1e-9 for "
+        "dop853, 1e-12 for rosenbrock [-]",
     )
-    position_tolerance_m: float = Field(
-        default=1e-3, gt=0.0, description="error of a step in position, dop853 and rosenbrock [m]"
+    position_tolerance_m: float | None = Field(
+        default=None, gt=0.0, description="error of a step in position [m]; by default 1e-3 for dop853, 1e-4 for rosenbrock"
     )
     velocity_tolerance_m_s: float = Field(
         default=1e-6, gt=0.0, description="error of a step in velocity; rosenbrock also allows position_tolerance_m a step [m/s]"
@@ -59,6 +63,16 @@ class Integrator(Record):
                 ]
             )
         return self
+
+    @property
+    def relative_allowed(self) -> float:
+        """Error of a step over the state [-]."""
+        return self.relative_tolerance or (1e-12 if self.method == "rosenbrock" else 1e-9)
+
+    @property
+    def position_allowed_m(self) -> float:
+        """Error of a step in position [m]."""
+        return self.position_tolerance_m or (1e-4 if self.method == "rosenbrock" else 1e-3)
 
     @property
     def angle_allowed_rad(self) -> float:

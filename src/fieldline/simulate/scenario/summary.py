@@ -76,7 +76,7 @@ def _integrator(scenario, length_s: float) -> str:
     one = scenario.integrator
     field = "at each stage" if one.field_update == "stage" else "once per step"
     if one.method != "rk4":
-        return f"{one.method}, relative tolerance {one.relative_tolerance:g}, field {field}"
+        return f"{one.method}, error of a step {one.position_allowed_m:g} m, field {field}"
     steps = length_s / longest_step_s(scenario)
     return f"rk4, step {one.step_s:g} s, field {field}: at least {steps:,.0f} steps"
 
