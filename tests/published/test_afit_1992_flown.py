@@ -60,6 +60,17 @@ def test_what_125_amperes_cannot_hold_is_refused_with_the_nearest():
         flown("standoff", "allocated", current_max_a=125.0, thrust_max_n=10.0)
 
 
+LIMITED = {"current_max_a": 125.0, "thrust_max_n": 10.0, "rate_hz": 0.1, "field": "IGRF-14"}
+
+
+@pytest.mark.parametrize(("controller", "left"), [("allocated", 1.0), ("predictive", 0.01)])
+def test_a_step_beyond_the_limits_is_taken_within_them(controller, left):
+    ways = {"place_m": (0.0, 100.0, 0.0), "start_m": (0.0, 300.0, 0.0), "duration_s": 20_000.0}
+    found = flown("standoff", controller, 28.5, **ways, **LIMITED)
+    assert float(found["peak_current_a"]) <= 125.0
+    assert float(found["error_m"][-1]) < left and float(found["angle_deg"].max()) < 0.5
+
+
 def test_the_linear_motion_is_wrong_in_proportion_to_the_distance():
     found = linear_range((100.0, 1000.0), (5.0, 15.0))
     error = found["place_error"].values

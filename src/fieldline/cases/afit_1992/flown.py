@@ -54,6 +54,7 @@ def flown(
     onboard: str | None = None,
     field_scale: float = 1.0,
     place_m=None,
+    start_m=None,
     duration_s: float = 86_164.0,
     rate_hz: float = 1.0,
     step_s: float = 5.0,
@@ -71,7 +72,7 @@ def flown(
     ----------
     case : "standoff", "r-bar" or "v-bar" of appendix E: vehicle and weights.      controller : see the module.
     field : "thesis" (its dipole), "dipole" or "IGRF-14", the truth.      onboard : the model on board; the truth by default.
-    field_scale : the truth's field over what is believed of it.      place_m : held (3,) [m]; the case's own by default.
+    field_scale : the truth's field over what is believed of it.      place_m : held (3,) [m]; the case's own by default.      start_m : where it begins; there by default.
     current_max_a, thrust_max_n : limits; far away by default, as in the thesis.
     disturbance_s : in which unknown loads are learned; 0 never.      gravity, drag_area_m2, eccentricity : of the surroundings.
     contact_limit_a : most current that the plasma takes from a contactor; lowers current_max_a.
@@ -91,9 +92,8 @@ def flown(
             raise InputError(f'{name} "{shown(str(value))}" is unknown; {nearest(str(value), known)}')
     own = APPROACHES[case]
     made = built({"vertical_m": own.towers_m[0], "horizontal_m": own.towers_m[1], "arms": "centre"})
-    place = np.asarray(own.target_m if place_m is None else place_m, dtype=float)
-    if place.shape != (3,) or not np.isfinite(place).all():
-        raise InputError(f"place_m must be three places x, y, z in metres; got {place_m!r}.")
+    place = _place("place_m", own.target_m if place_m is None else place_m)
+    start = place if start_m is None else _place("start_m", start_m)
     for name in ("field_scale", "duration_s", "rate_hz", "step_s", "current_max_a", "thrust_max_n"):
         number(name, settings[name], 1e-9)
     limit = current_max_a if contact_limit_a is None else min(current_max_a, number("contact_limit_a", contact_limit_a, 1e-9))
@@ -103,7 +103,7 @@ def flown(
         law,
         parameters,
         inclination_deg=number("inclination_deg", inclination_deg, 0.0, 180.0),
-        place_m=place,
+        place_m=start,
         field=field,
         onboard=onboard,
         duration_s=duration_s,
@@ -116,6 +116,17 @@ def flown(
         eccentricity=eccentricity,
     )
     return _dataset(_flight(scenario), place, settings)
+
+
+def _place(name: str, given) -> np.ndarray:
+    """(3,) [m], or a refusal."""
+    try:
+        place = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        place = np.empty(0)
+    if place.shape != (3,) or not np.isfinite(place).all() or np.abs(place).max() > 1e5:
+        raise InputError(f"{name} must be three places x, y, z in metres, under 100 km; got {given!r}.")
+    return place
 
 
 def _law(controller, state_weight, place, field_scale, disturbance_s, free: bool) -> tuple[str, dict]:

@@ -22,6 +22,14 @@ NODES, STEP, TABLE = 0, 1, 2  # of the law's own numbers: nodes of the gains, th
 
 
 @njit(cache=True, error_model="numpy")
+def within_reach(params, error):
+    """Errors of place cut to what a part of the loads answers; see `designs.reached`."""
+    for j in range(3):
+        most = params[own.REACH + j]
+        error[2 * j] = min(max(error[2 * j], -most), most)
+
+
+@njit(cache=True, error_model="numpy")
 def tracking_allocated(t, measurement, memory, params):
     """Thrusts and currents of `tracking-allocated`."""
     m = int(params[own.CONTROLS])
@@ -30,6 +38,7 @@ def tracking_allocated(t, measurement, memory, params):
     if not known:
         return silent(memory, params)
     at = own.law_at(params)
+    within_reach(params, error)
     for k in range(6):
         for j in range(12):
             loads[k] -= params[at + 12 * k + j] * error[j]
@@ -65,6 +74,7 @@ def tracking_periodic(t, measurement, memory, params):
     if not known:
         return silent(memory, params)
     wanted, u = np.zeros(6), np.zeros(m)
+    within_reach(params, error)
     gained(t, params, own.law_at(params), error, m, u)
     in_body(q_hb, loads, wanted)
     for k in range(6):

@@ -13,12 +13,14 @@ from fieldline.control.periodic_system import held_gains, held_problem, held_ste
 from fieldline.control.tracking.by_instant import tracking_frozen
 from fieldline.control.tracking.by_loads import tracking_allocated, tracking_periodic
 from fieldline.control.tracking.by_prediction import MOST_CONTROLS, MOST_STAGES, PLAN_MEMORY, tracking_predictive
+from fieldline.control.tracking.onboard_vehicle import REACH
 from fieldline.control.tracking.orbit_change import LAWS as ORBIT_LAWS
 from fieldline.control.tracking.settings import COMMON, WEIGHTS, Known, known_of, scale_of, state_weights
 from fieldline.control.tracking.tracking_loop import MEMORY
 from fieldline.errors import InputError, NoEstimateError
 from fieldline.mechanics.relative_motion import STATES, output_matrix
 
+REACH_SHARE = 0.6  # of the radial load, which the way along the track asks for by its rate
 RETURNED = 1e-3  # margin from which a motion counts as within reach again
 COMMANDS = ("thrust", "current")
 
@@ -112,6 +114,18 @@ def load_gain(known: Known, period_s: float) -> tuple[np.ndarray, np.ndarray]:
     return K, P
 
 
+def reached(known: Known, gain: np.ndarray) -> np.ndarray:
+    """The head with the error along the track that REACH_SHARE of the loads answers, by a gain (6, 12) of loads [m].
+
+    Along the track alone: no place there pulls, so the body comes from afar at a constant rate. Upwards the orbit pulls away
+    in proportion, and must be answered so; across it pulls back.
+    """
+    head = known.head.copy()
+    if known.values["hold"] == "all":
+        head[REACH + 1] = REACH_SHARE * known.load_sizes[0] / abs(gain[1, 2])
+    return head
+
+
 def moved(known: Known) -> np.ndarray:
     """The states that are controlled: all, or those of the attitude."""
     return np.arange(6 if known.values["hold"] == "attitude" else 0, 12)
@@ -125,13 +139,15 @@ def _problem(F, G, q, kept) -> tuple[bytes, bytes, bytes, tuple[int, int, int]]:
 
 def _pack_allocated(table, context) -> np.ndarray:
     known = known_of("tracking-allocated", {**COMMON, **WEIGHTS}, table, context)
-    return np.concatenate([known.head, load_gain(known, context.period_s)[0].ravel()])
+    gain, _ = load_gain(known, context.period_s)
+    return np.concatenate([reached(known, gain), gain.ravel()])
 
 
 def _pack_periodic(table, context) -> np.ndarray:
     known = known_of("tracking-periodic", {**COMMON, **WEIGHTS}, table, context)
     gains = periodic_gains(known)
-    return np.concatenate([known.head, [len(gains), known.step_s], gains.ravel()])
+    head = reached(known, load_gain(known, context.period_s)[0])
+    return np.concatenate([head, [len(gains), known.step_s], gains.ravel()])
 
 
 def periodic_gains(known: Known) -> np.ndarray:

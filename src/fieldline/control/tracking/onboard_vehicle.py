@@ -20,7 +20,8 @@ from fieldline.mechanics.relative_motion import motion_matrix
 (CONTROLS, CONDUCTORS, THRUSTERS, MEAN_MOTION, RADIUS, FACTOR, BY_READING, TARGET, SETTLE) = range(9)
 ANGLES, WEIGHT, SHARE, POWER_MAX, MASS = 9, 12, 18, 19, 20  # angles (3), weights of loads (6), mass and inertia (6)
 FILTER = 26
-PATH = 27
+REACH = 27  # (3) errors of place beyond which the law wants no more
+PATH = 30
 MOTION = PATH + 9
 TABLE = MOTION + 72
 WIRE, POINT, IS_THRUSTER, LOWER, UPPER, COST, RESISTANCE, FORWARD, BACKWARD = 0, 3, 6, 7, 8, 9, 10, 11, 12

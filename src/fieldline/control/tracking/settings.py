@@ -17,6 +17,7 @@ from fieldline.mechanics.lorentz import conductor_map
 from fieldline.mechanics.relative_motion import input_matrix, motion_matrix
 
 LIMITLESS_W = 1e30
+ATTITUDE_FIRST = 10.0  # weight of moments beside forces where limits do not leave both: a place waits, a tumble does not
 QUIET = 1e-2  # weight of the force where attitude alone is held: none is wanted, but it matters less
 ACROSS_HO = np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])  # orbital axes o to axes h
 
@@ -159,6 +160,7 @@ def _head(values, controls, mass, moments, n, radius, sizes, conductors: int, th
             f"{2.5 * distance / length:.3g} m/s, or a shorter move_s."
         )
     weights = 1.0 / np.maximum(sizes, 1e-6 * sizes.max())
+    weights[3:] *= ATTITUDE_FIRST
     weights = weights / weights.max()
     if target == 0.0:
         weights[:3] = QUIET * weights[3:].max() * np.median(sizes[3:]) / max(np.median(sizes[:3]), 1e-300)
@@ -166,6 +168,7 @@ def _head(values, controls, mass, moments, n, radius, sizes, conductors: int, th
     head[own.CONTROLS], head[own.CONDUCTORS], head[own.THRUSTERS] = len(controls), conductors, thrusters
     head[own.MEAN_MOTION], head[own.RADIUS], head[own.FACTOR] = n, radius, values["field_factor"]
     head[own.BY_READING], head[own.TARGET] = float(values["field"] == "magnetometer"), target
+    head[own.REACH : own.REACH + 3] = np.inf
     head[own.SETTLE], head[own.FILTER] = values["disturbance_s"], values["filter_s"]
     head[own.ANGLES : own.ANGLES + 3] = np.radians(values["angles_deg"])
     head[own.WEIGHT : own.WEIGHT + 6], head[own.SHARE] = weights, COST
