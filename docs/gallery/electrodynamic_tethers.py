@@ -160,7 +160,7 @@ def draw_tape() -> None:
     """The tape for some orbits, balanced and with an end mass that is too light."""
     figure, (current, fall, across) = panels(3, 6.4, sharex=True)
     for module, colour in ((BALANCED_KG, BLUE), (2.0, RED)):
-        run, minutes = flown("deorbit_tape", **{"body.1.mass_kg": module, "time.duration_orbits": 6.0})
+        run, minutes = flown("deorbit-tape", **{"body.1.mass_kg": module, "time.duration_orbits": 6.0})
         if module == BALANCED_KG:
             current.plot(minutes, run["current_tape"].values.mean(axis=1), color=colour, linewidth=0.9)
             amperes = run["current_tape"].values

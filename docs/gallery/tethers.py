@@ -22,7 +22,7 @@ HERE = Path(__file__).parent
 SKIPROPE = {"skiprope_amplitude_m": 60.0, "skiprope_sense": "left-handed"}
 QUIET = {"line.0.circuit": None, "line.0.heat": None, "line.0.start": SKIPROPE, "time.output_step_s": 5.0}
 FLIGHTS: dict[str, tuple[str, dict, tuple[str, ...]]] = {
-    "microsat_pair": ("microsat_pair", {}, ("libration", "ends")),
+    "microsat-pair": ("microsat-pair", {}, ("libration", "ends")),
     "tss1r": ("tss1r", {}, ("shape", "current")),
     "skiprope": ("tss1r", QUIET, ("shape", "skiprope")),
     "deploy": ("deploy", {}, ("libration", "tension")),

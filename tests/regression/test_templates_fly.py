@@ -9,7 +9,7 @@ from fieldline.simulate.scenario.templates import TEMPLATES, template
 SHORT = {"time.duration_orbits": None, "time.duration_s": 120.0, "time.output_step_s": 10.0}
 
 
-FINE_STEPS = ("picosatellite", "detumble", "chain", "tss1r", "deorbit_tape", "microsat_pair")  # too many for plain Python
+FINE_STEPS = ("picosatellite", "detumble", "chain", "tss1r", "deorbit-tape", "microsat-pair")  # too many for plain Python
 NAMES = [pytest.param(name, marks=() if name in FINE_STEPS else pytest.mark.kernels) for name in sorted(TEMPLATES)]
 
 
