@@ -72,7 +72,8 @@ def flown(
     ----------
     case : "standoff", "r-bar" or "v-bar" of appendix E: vehicle and weights.      controller : see the module.
     field : "thesis" (its dipole), "dipole" or "IGRF-14", the truth.      onboard : the model on board; the truth by default.
-    field_scale : the truth's field over what is believed of it.      place_m : held (3,) [m]; the case's own by default.      start_m : where it begins; there by default.
+    field_scale : the truth's field over what is believed of it.
+    place_m : held (3,) [m]; the case's own by default.      start_m : where it begins; there by default.
     current_max_a, thrust_max_n : limits; far away by default, as in the thesis.
     disturbance_s : in which unknown loads are learned; 0 never.      gravity, drag_area_m2, eccentricity : of the surroundings.
     contact_limit_a : most current that the plasma takes from a contactor; lowers current_max_a.

@@ -16,7 +16,7 @@ from fieldline.errors import InputError
 from fieldline.mechanics.lorentz import conductor_map
 from fieldline.mechanics.relative_motion import input_matrix, motion_matrix
 
-LIMITLESS_W = 1e30
+LIMITLESS = 1e30
 ATTITUDE_FIRST = 10.0  # weight of moments beside forces where limits do not leave both: a place waits, a tumble does not
 QUIET = 1e-2  # weight of the force where attitude alone is held: none is wanted, but it matters less
 ACROSS_HO = np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])  # orbital axes o to axes h
@@ -168,11 +168,11 @@ def _head(values, controls, mass, moments, n, radius, sizes, conductors: int, th
     head[own.CONTROLS], head[own.CONDUCTORS], head[own.THRUSTERS] = len(controls), conductors, thrusters
     head[own.MEAN_MOTION], head[own.RADIUS], head[own.FACTOR] = n, radius, values["field_factor"]
     head[own.BY_READING], head[own.TARGET] = float(values["field"] == "magnetometer"), target
-    head[own.REACH : own.REACH + 3] = np.inf
+    head[own.REACH : own.REACH + 3] = LIMITLESS
     head[own.SETTLE], head[own.FILTER] = values["disturbance_s"], values["filter_s"]
     head[own.ANGLES : own.ANGLES + 3] = np.radians(values["angles_deg"])
     head[own.WEIGHT : own.WEIGHT + 6], head[own.SHARE] = weights, COST
-    head[own.POWER_MAX] = values["power_max_w"] or LIMITLESS_W
+    head[own.POWER_MAX] = values["power_max_w"] or LIMITLESS
     head[own.MASS : own.MASS + 3], head[own.MASS + 3 : own.MASS + 6] = mass, moments
     head[own.PATH : own.MOTION] = [*start, *place, values["move_begins_s"], length, k]
     head[own.MOTION : own.TABLE] = own.motion_rows(n, radius, moments).ravel()
