@@ -14,7 +14,7 @@ import pytest
 
 import fieldline as fl
 from fieldline.cli import main
-from fieldline.estimation.skiprope_telemetry import SkipropeStream, SkipropeSettings
+from fieldline.estimation.skiprope_telemetry import SkipropeSettings, SkipropeStream
 from fieldline.estimation.skiprope_telemetry.face import rows_of
 from fieldline.telemetry import telemetry_of
 from fieldline.telemetry.skiprope_csv import skiprope_columns, skiprope_line
