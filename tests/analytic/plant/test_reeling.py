@@ -11,7 +11,6 @@ from fieldline.dynamics.parameters import STATE
 from fieldline.simulate.loop.reeling import reel_lines
 from fieldline.simulate.run_dataset import dataset_of
 
-pytestmark = pytest.mark.kernels
 MU, EA = 0.008, 2e5
 ROPE = {
     "name": "tether",

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba import config
 from scipy.spatial.transform import Rotation
 
 from fieldline.control import LAWS
@@ -14,7 +15,7 @@ pytestmark = pytest.mark.kernels
 component = st.floats(-1.0, 1.0).filter(lambda x: x == 0.0 or abs(x) > 1e-6)
 vectors = st.tuples(component, component, component).filter(lambda v: np.linalg.norm(v) > 0.05)
 DIPOLE_LAWS = [name for name, law in LAWS.items() if "dipole" in law.commands]
-quick = settings(max_examples=40, deadline=None)
+quick = settings(max_examples=4 if config.DISABLE_JIT else 40, deadline=None)  # plain Python takes long over a regulator
 
 
 def across(moment, field):

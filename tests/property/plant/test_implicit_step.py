@@ -10,7 +10,6 @@ import plant_flights as pf
 from plant_flights import law, torquers, wheels
 from plant_loads import AXES, LIGHT, ROD
 
-pytestmark = pytest.mark.kernels
 TRUTH = {
     "method": "dop853",
     "relative_tolerance": 1e-13,
