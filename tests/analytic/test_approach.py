@@ -47,6 +47,7 @@ def test_the_cone_holds_the_way():
 
 
 @pytest.mark.kernels
+@pytest.mark.flight
 def test_what_a_hold_costs_and_what_is_refused():
     from fieldline.simulate.scenario.templates import template
 

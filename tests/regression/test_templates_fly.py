@@ -10,7 +10,10 @@ SHORT = {"time.duration_orbits": None, "time.duration_s": 120.0, "time.output_st
 
 
 FINE_STEPS = ("picosatellite", "detumble", "chain", "tss1r", "deorbit-tape", "microsat-pair")  # too many for plain Python
-NAMES = [pytest.param(name, marks=() if name in FINE_STEPS else pytest.mark.kernels) for name in sorted(TEMPLATES)]
+NAMES = [
+    pytest.param(name, marks=() if name in FINE_STEPS else (pytest.mark.kernels, pytest.mark.flight))
+    for name in sorted(TEMPLATES)
+]
 
 
 @pytest.mark.parametrize("name", NAMES)

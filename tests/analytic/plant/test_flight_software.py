@@ -7,7 +7,7 @@ import plant_flights as pf
 from fieldline.simulate.loop.records import NEVER
 from plant_flights import law, torquers, wheels
 
-pytestmark = pytest.mark.kernels
+pytestmark = [pytest.mark.kernels, pytest.mark.flight]
 
 
 def moments(flight):

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 import plant_flights as pf
 
-pytestmark = pytest.mark.kernels
+pytestmark = [pytest.mark.kernels, pytest.mark.flight]
 MASS, ARM, LENGTH = 100.0, 0.6, 2000.0
 AXES = np.eye(3).tolist()
 JETS = [

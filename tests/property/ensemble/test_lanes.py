@@ -13,7 +13,7 @@ from fieldline.simulate.flight import Flight
 from fieldline.simulate.loop.records import Outcome
 from fieldline.simulate.scenario import Scenario
 
-pytestmark = pytest.mark.kernels
+pytestmark = [pytest.mark.kernels, pytest.mark.flight]
 
 # Two ways of rounding one sum: parts in 1e15 of a step, a thousand times that after some hundred steps of a tumble.
 NEAR = {"rtol": 0.0, "atol": 1e-11}

@@ -11,7 +11,7 @@ from fieldline.simulate.ensemble.dispersion import drawn, streams
 from fieldline.simulate.flight import Flight
 from fieldline.simulate.outcome import RunInterrupted
 
-pytestmark = pytest.mark.kernels
+pytestmark = [pytest.mark.kernels, pytest.mark.flight]
 
 SCENARIO = Scenario.from_dict(TABLE, "scenario").replace(**{"time.duration_s": 4.0, "time.output_step_s": 2.0})
 RATES = {"body.0.rate_deg_s": Uniform([-5.0, -5.0, -5.0], [5.0, 5.0, 5.0])}

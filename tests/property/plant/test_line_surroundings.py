@@ -20,7 +20,7 @@ from fieldline.environment.radiation import ALBEDO, EARTH_INFRARED_W_M2, line_vi
 from fieldline.frames.earth_rotation import dcm_ei
 from fieldline.simulate.run_dataset import dataset_of
 
-pytestmark = pytest.mark.kernels
+pytestmark = [pytest.mark.kernels, pytest.mark.flight]
 AHEAD_S = 1.0  # half of the two seconds for which surroundings are held
 ROPE = {
     "name": "rope",

@@ -112,6 +112,7 @@ def fly(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.kernels
+@pytest.mark.flight
 @pytest.mark.parametrize(
     "name, words",
     [
@@ -147,6 +148,7 @@ def test_laws_that_numba_cannot_compile(fly, name, words):
 
 
 @pytest.mark.kernels
+@pytest.mark.flight
 @pytest.mark.parametrize(
     "table, words",
     [
@@ -161,6 +163,7 @@ def test_loads_and_events_that_misbehave(fly, table, words):
 
 
 @pytest.mark.kernels
+@pytest.mark.flight
 @pytest.mark.parametrize(("name", "compiled"), [("nowhere", "false"), ("nowhere_compiled", "true")])
 def test_an_estimator_that_gives_no_attitude(fly, name, compiled):
     task = f'[[software]]\nlaw = "user.py:{name}"\nrole = "estimator"\nrate_hz = 1.0\ncompiled = {compiled}\n'
@@ -177,6 +180,7 @@ def test_a_file_that_ends_the_process_as_it_is_loaded(fly, tmp_path):
 
 
 @pytest.mark.kernels
+@pytest.mark.flight
 def test_what_a_law_prints_is_no_result(fly):
     code, out, err = fly(law("prints", compiled=False), "--json")
     assert code == 0 and json.loads(out)["complete"] is True and "hello" in err

@@ -96,6 +96,7 @@ def test_what_is_no_scenario(scenario):
 
 
 @pytest.mark.kernels
+@pytest.mark.flight
 def test_an_interrupted_run_says_once_what_is_kept(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "law.py").write_text(
@@ -131,6 +132,7 @@ def test_a_coil_beyond_counting_is_refused(capsys):
 
 
 @pytest.mark.kernels
+@pytest.mark.flight
 def test_one_event_is_told_as_one(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     event = '[[event]]\nkind = "user"\nfunction = "at.py:half"\n'
