@@ -54,7 +54,7 @@ def test_the_error_goes_with_the_square_of_the_step():
 
 
 def test_an_adaptive_step_that_could_not_see_it_is_refused():
-    with pytest.raises(fl.InputError, match='field_update must be "stage" for method = "dop853"'):
+    with pytest.raises(fl.InputError, match='field_update must be "stage" where the step is adaptive'):
         pf.scenario(integrator={"method": "dop853", "field_update": "step"})
 
 

@@ -21,6 +21,7 @@ from fieldline.orbit import start as starts
 from fieldline.simulate.scenario.orbit_start import Elements, OrbitStart, SunSynchronous
 
 SECONDS_PER_HOUR = 3600.0
+SLOWEST, FASTEST = 0.8, 1.2  # of circular speed: what hangs on a line that is not a fifth of the way to the Earth
 
 
 def start_states(scenario) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -112,13 +113,14 @@ def _sun_synchronous(orbit: SunSynchronous) -> starts.SunSynchronous:
 
 
 def _beside(first: tuple[np.ndarray, np.ndarray], body, tied: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Equation (1); a body that is tied to a line need not be on an orbit by itself."""
+    """Equation (1); a body that is tied to a line need not be on an orbit by itself, but neither falls nor leaves."""
     position, velocity = first
     dcm_io, rate_o = orbital_axes(position, velocity)
     offset = np.array(body.offset_o_m)
     place = position + dcm_io @ offset
     speed = velocity + dcm_io @ (np.array(body.offset_rate_o_m_s) + np.cross(rate_o, offset))
-    if tied:
+    ratio = float(np.linalg.norm(speed) / np.sqrt(EARTH_GM_M3_S2 / np.linalg.norm(place)))
+    if tied and SLOWEST < ratio < FASTEST:
         return place, speed
     try:
         kepler.check_orbit(kepler.elements_from_state(place, speed))
