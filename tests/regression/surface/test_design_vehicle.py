@@ -75,8 +75,6 @@ def test_too_many_or_too_few_places(places):
         vehicle_survey(tank_with_towers(), 4e5, [0.1], arguments=places[0], nodes=places[1])
 
 
-@pytest.mark.flight
-@pytest.mark.kernels
 def test_cases_have_figures():
     for name in CASES:
         if name.startswith("afit_1992"):
