@@ -270,7 +270,7 @@ def magnetic_torque(t, b, z, q, field_b, dcm_ei, plant, inputs, log, out):
     return torque
 
 
-@merged
+@inner
 def surface_loads(t, b, z, q, dcm_ei, plant, log):
     """Force_i [N] and torque_b [N m] of air and light on body b."""
     bodies, surroundings = plant.bodies, plant.surroundings
@@ -306,7 +306,7 @@ def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, shared, log, out):
     surroundings, bodies = plant.surroundings, plant.bodies
     base = TANGENT * b
     r = three(z, base)
-    q = attitude_at(z, start, b)
+    q = attitude_at(z, start, b) if bodies.rigid[b] != 0 else (start[b, 0], start[b, 1], start[b, 2], start[b, 3])
     g = weight_per_mass(r, dcm_ei, surroundings)
     note(log, GRAVITY, b, scale(bodies.mass[b], g), NOTHING)
     force, torque = three(shared.outer[b], 0), three(shared.outer[b], 3)

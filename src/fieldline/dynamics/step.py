@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fieldline.compiled import inner, kernel, merged
+from fieldline.compiled import inner, kernel
 from fieldline.dynamics.implicit_arrays import Implicit, new_implicit
 from fieldline.dynamics.layout import store, three
 from fieldline.dynamics.lines.ambient import new_ambient
@@ -22,6 +22,7 @@ from fieldline.dynamics.parameters import STATE, TANGENT, Ambient, Plant, state_
 from fieldline.dynamics.rates import freeze_fields, plant_rates
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit
 from fieldline.integrate.steps import combine
+from fieldline.packed import Packed
 
 
 class Work(NamedTuple):
@@ -97,8 +98,9 @@ def lift(y, start, z):
         for j in range(3):
             z[TANGENT * b + 6 + j] = 0.0
             z[TANGENT * b + 9 + j] = y[STATE * b + 10 + j]
-    for j in range(TANGENT * bodies, z.shape[0]):
-        z[j] = y[j + bodies]
+    here, there = y[STATE * bodies :], z[TANGENT * bodies :]
+    for j in range(there.shape[0]):
+        there[j] = here[j]
 
 
 @inner
@@ -113,11 +115,12 @@ def settle(z, start, y):
         for j in range(4):
             y[STATE * b + 6 + j] = q[j]
         store(y, STATE * b + 10, three(z, TANGENT * b + 9))
-    for j in range(TANGENT * bodies, z.shape[0]):
-        y[j + bodies] = z[j]
+    here, there = z[TANGENT * bodies :], y[STATE * bodies :]
+    for j in range(here.shape[0]):
+        there[j] = here[j]
 
 
-@merged
+@inner
 def attempt(t, h, y, plant, inputs, tableau, loads, call, shared, work):
     """Stages of a step of length h from state y, leaving its end in work.z1; 0 or what a user's load did wrong."""
     lift(y, work.start, work.z)
@@ -164,5 +167,5 @@ def rates_of(t: float, y, plant: Plant, inputs, loads, call, shared: Shared) -> 
         raise ValueError(f"the plant's state has {state_size(plant)} numbers; got {len(y)}")
     work = new_work(plant, 1, loads=len(LOADS))
     out = np.zeros_like(work.z)
-    evaluate(float(t), np.array(y, dtype=float), plant, inputs, loads, call, shared, work, out)
+    evaluate(float(t), np.array(y, dtype=float), Packed(plant), Packed(inputs), loads, call, Packed(shared), Packed(work), out)
     return out, work.log

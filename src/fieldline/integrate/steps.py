@@ -26,34 +26,72 @@ GROW_MOST = 6.0
 def combine(z, h, k, weights, count, out):
     """z + h times the weighted sum of the first `count` rows of k, into out; zero weights cost nothing (1).
 
-    One pass a weight: the first one begins the sum and the last one ends it.
+    Four rows a pass: what goes through memory counts, not the sums.
     """
-    last = count - 1
-    while last >= 0 and weights[last] == 0.0:
-        last -= 1
-    if last < 0:
-        for i in range(z.size):
-            out[i] = z[i]
-        return
-    begun = False
-    for j in range(last):
-        w = weights[j]
-        if w == 0.0:
-            continue
-        if begun:
-            for i in range(z.size):
-                out[i] += w * k[j, i]
-        else:
-            for i in range(z.size):
-                out[i] = w * k[j, i]
+    left = 0
+    for j in range(count):
+        left += 1 if weights[j] != 0.0 else 0
+    begun, at = False, 0
+    while left > 4:
+        at, rows, w = next_four(weights, at)
+        sum_four(k, rows, w, begun, out)
         begun = True
-    w = weights[last]
-    if begun:
-        for i in range(z.size):
-            out[i] = z[i] + h * (out[i] + w * k[last, i])
+        left -= 4
+    if left > 0:
+        _, rows, w = next_four(weights[:count], at)
+        finish_four(z, h, k, rows, w, left, begun, out)
     else:
         for i in range(z.size):
-            out[i] = z[i] + h * (w * k[last, i])
+            out[i] = z[i]
+
+
+@njit(cache=True)
+def next_four(weights, at):
+    """(where to go on, rows, their weights) of the next four weights that are not zero; fewer repeat a row with weight zero."""
+    r0 = r1 = r2 = r3 = 0
+    w0 = w1 = w2 = w3 = 0.0
+    found = 0
+    while at < weights.size and found < 4:
+        w = weights[at]
+        if w != 0.0:
+            if found == 0:
+                r0, w0, r1, r2, r3 = at, w, at, at, at
+            elif found == 1:
+                r1, w1 = at, w
+            elif found == 2:
+                r2, w2 = at, w
+            else:
+                r3, w3 = at, w
+            found += 1
+        at += 1
+    return at, (r0, r1, r2, r3), (w0, w1, w2, w3)
+
+
+@njit(cache=True)
+def sum_four(k, rows, w, begun, out):
+    """Add four weighted rows of k to out, or begin it with them."""
+    k0, k1, k2, k3 = k[rows[0]], k[rows[1]], k[rows[2]], k[rows[3]]
+    if begun:
+        for i in range(out.size):
+            out[i] = out[i] + w[0] * k0[i] + w[1] * k1[i] + w[2] * k2[i] + w[3] * k3[i]
+    else:
+        for i in range(out.size):
+            out[i] = w[0] * k0[i] + w[1] * k1[i] + w[2] * k2[i] + w[3] * k3[i]
+
+
+@njit(cache=True)
+def finish_four(z, h, k, rows, w, count, begun, out):
+    """z + h times the sum of one to four weighted rows, and of what is in out where it is begun."""
+    k0, k1, k2, k3 = k[rows[0]], k[rows[1]], k[rows[2]], k[rows[3]]
+    if begun:
+        for i in range(out.size):
+            out[i] = z[i] + h * (out[i] + w[0] * k0[i] + w[1] * k1[i] + w[2] * k2[i] + w[3] * k3[i])
+    elif count == 1:
+        for i in range(out.size):
+            out[i] = z[i] + h * (w[0] * k0[i])
+    else:
+        for i in range(out.size):
+            out[i] = z[i] + h * (w[0] * k0[i] + w[1] * k1[i] + w[2] * k2[i] + w[3] * k3[i])
 
 
 @njit(cache=True)

@@ -113,7 +113,7 @@ def test_a_node_appears_in_the_plant(rest, point):
         flight.y[feeds] = 151.0
         pf.rates(flight)
         before, out = Account(flight), int(flight.plant.lines.nodes[0])
-        assert reeled(0.0, flight.run) == 0
+        assert reeled(0.0, flight.packed) == 0
         after = Account(flight)
         assert flight.plant.lines.nodes[0] == out + 1 and flight.y[feeds] == pytest.approx(51.0)
         assert after.mass == pytest.approx(before.mass, rel=1e-14)
@@ -130,7 +130,7 @@ def test_a_node_vanishes_in_the_plant(rest, point):
     for seed in range(5):
         flight = disturbed(seed, 35.0, ROPE | {"rest_length_m": rest}, point)
         before, out = Account(flight), int(flight.plant.lines.nodes[0])
-        assert reeled(0.0, flight.run) == 0
+        assert reeled(0.0, flight.packed) == 0
         after = Account(flight)
         assert flight.plant.lines.nodes[0] == out - 1
         assert after.mass == pytest.approx(before.mass, rel=1e-14)
@@ -285,13 +285,13 @@ def test_a_warm_line_comes_and_goes_with_its_warmth():
     flight.y[warm : warm + out + 2] = [300.0 + 10.0 * j for j in range(out + 1)] + [200.0]
     grown = 1.0 + 2e-5 * (flight.y[warm + out] - flight.plant.lines.reference[0])
     before = strains(flight, out, grown)
-    assert reeled(0.0, flight.run) == 0
+    assert reeled(0.0, flight.packed) == 0
     assert flight.y[warm + out + 1] == flight.y[warm + out]
     assert strains(flight, out, grown) == pytest.approx(before, abs=1e-9)
     assert strains(flight, out + 1, grown) == pytest.approx(before, abs=1e-9)
     flight.y[feeds], flight.y[warm + out + 1] = 39.0, 260.0
     mixed = (100.0 * flight.y[warm + out] + 39.0 * 260.0) / 139.0
-    assert reeled(0.0, flight.run) == 0 and flight.plant.lines.nodes[0] == out
+    assert reeled(0.0, flight.packed) == 0 and flight.plant.lines.nodes[0] == out
     assert flight.y[warm + out] == pytest.approx(mixed, rel=1e-12)
 
 

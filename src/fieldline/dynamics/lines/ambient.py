@@ -106,8 +106,8 @@ def conduct(t, k, row, segments, warm, plant, inputs, ambient):
 def refresh_line(t, h, k, z, start, dcm_ei, plant, inputs, ambient):
     """What surrounds line k at t + h, as seen from the state z at t; dcm_ei: of t + h."""
     lines = plant.lines
-    place_a, speed_a, _ = line_end(z, start, lines.body[k, 0], *attachment(t, k, 0, plant, inputs))
-    place_b, speed_b, _ = line_end(z, start, lines.body[k, 1], *attachment(t, k, 1, plant, inputs))
+    place_a, speed_a, _ = line_end(z, start, lines.body[k, 0], plant.bodies, *attachment(t, k, 0, plant, inputs))
+    place_b, speed_b, _ = line_end(z, start, lines.body[k, 1], plant.bodies, *attachment(t, k, 1, plant, inputs))
     nodes, row = lines.nodes[k], lines.first[k] + k
     base, feed = nodes_at(plant) + 6 * lines.first[k], feeds_at(plant) + 2 * k
     warm = temperatures_at(plant) + lines.warm[k] if lines.warm[k + 1] > lines.warm[k] else -1

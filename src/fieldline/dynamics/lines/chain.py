@@ -28,7 +28,6 @@ from fieldline.dynamics.lines.heat import warming
 from fieldline.dynamics.lines.segment_loads import segment_load
 from fieldline.dynamics.load_log import LINES, impose
 from fieldline.dynamics.loads.joint import joint_torque
-from fieldline.dynamics.loads.line import line_tension
 from fieldline.dynamics.parameters import NO_REEL, TANGENT
 from fieldline.environment.gravity import gravity_kernel
 from fieldline.frames.attitude import to_body, to_inertial
@@ -39,11 +38,28 @@ END_MASS = 10  # numbers of an end mass of equation (3): sum m, S (3), J (xx, yy
 
 
 @inner
+def weight_by_table(r_i, dcm_ei, gravity):
+    """The pull [m/s^2] of a field of higher degree, inertial axes."""
+    return matvec(transpose(dcm_ei), gravity_kernel(matvec(dcm_ei, r_i), gravity))
+
+
+@merged
 def weight_per_mass(r_i, dcm_ei, surroundings):
-    """The Earth's pull [m/s^2], inertial axes."""
-    if surroundings.rotating:
-        return matvec(transpose(dcm_ei), gravity_kernel(matvec(dcm_ei, r_i), surroundings.gravity))
-    return gravity_kernel(r_i, surroundings.gravity)
+    """The Earth's pull [m/s^2], inertial axes; written out for a point and an oblate Earth, whose pole p is all it needs.
+
+    J2 of `fieldline.environment.gravity`, equation (2) there: a = -(G M/r^3) ((1 + f (1 - 5 (r.p)^2/r^2)) r + 2 f (r.p) p).
+    """
+    gravity = surroundings.gravity
+    if gravity.table.shape[0] > 0:
+        return weight_by_table(r_i, dcm_ei, gravity)
+    square = dot(r_i, r_i)
+    inverse = gravity.gm / (square * sqrt(square))
+    if gravity.j2 == 0.0:
+        return scale(-inverse, r_i)
+    pole = (dcm_ei[6], dcm_ei[7], dcm_ei[8])
+    flat, up = 1.5 * gravity.j2 * gravity.radius_m * gravity.radius_m / square, dot(r_i, pole)
+    across = 1.0 + flat * (1.0 - 5.0 * up * up / square)
+    return scale(-inverse, axpy(across, r_i, scale(2.0 * flat * up, pole)))
 
 
 @inner
@@ -71,9 +87,11 @@ def attachment(t, k, end, plant, inputs):
 
 
 @inner
-def line_end(z, start, b, point_b, point_rate_b):
-    """Attachment point on body b: its place and velocity, inertial axes, and the body's attitude."""
+def line_end(z, start, b, bodies, point_b, point_rate_b):
+    """Attachment point on body b: its place and velocity, inertial axes, and the body's attitude; a point is its own."""
     base = TANGENT * b
+    if bodies.rigid[b] == 0:
+        return three(z, base), three(z, base + 3), (start[b, 0], start[b, 1], start[b, 2], start[b, 3])
     q = attitude_at(z, start, b)
     swing_b = add(point_rate_b, cross(three(z, base + 9), point_b))
     place = add(three(z, base), to_inertial(q, point_b))
@@ -137,67 +155,99 @@ def carry_to_attachment(b, gone, moving, point_b, place, speed, q, z, dcm_ei, su
 
 
 @merged
+def tighten(chord, chord_rate, rest, rest_rate, stiffness, damping):
+    """Tension [N] of a segment by (1), and what it pulls per metre of chord [N/m]; zeros where it is slack."""
+    stretched = sqrt(dot(chord, chord))
+    if stretched <= rest:
+        return 0.0, 0.0
+    inverse, share = 1.0 / stretched, 1.0 / rest
+    rate = dot(chord, chord_rate) * inverse - rest_rate * stretched * share
+    tension = max(0.0, (stiffness * (stretched - rest) + damping * rate) * share)
+    return tension, tension * inverse
+
+
+@inner
+def pull_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out):
+    """Rates of the nodes of line k into `out`, tensions of all its segments into shared.tension.
+
+    ends: places and velocities of A's and B's attachments; row, base: where its segments start in `lines`, its nodes in z.
+    Returns (force on A's end [N], half segment there [kg], on B's end, half segment, mass that is out [kg]), without weight.
+    This is where a line's time goes: arrays are cut to the line first, so that an index that starts at 0 is known not to be
+    negative.
+    """
+    lines, surroundings, ambient = plant.lines, plant.surroundings, shared.ambient
+    nodes, feed = lines.nodes[k], feeds_at(plant) + 2 * k
+    warm = temperatures_at(plant) + lines.warm[k] if lines.warm[k + 1] > lines.warm[k] else -1
+    exposed = lines.exposed[k] != 0
+    here, there = z[base : base + 6 * nodes], out[base : base + 6 * nodes]
+    rests, linear_mass = lines.rest[row : row + nodes + 1], lines.linear_mass[row : row + nodes + 1]
+    stiffness, damping = lines.stiffness[row : row + nodes + 1], lines.damping[row : row + nodes + 1]
+    tensions = shared.tension[row : row + nodes + 1]
+    p0, v0, place_b, speed_b = ends
+    behind, half, mass_out = NOTHING, 0.0, 0.0  # what the segment behind does to the point, and half its mass
+    end_a, mass_a = NOTHING, 0.0
+    for j in range(nodes + 1):
+        if j < nodes:
+            p1, v1, cold, rest_rate = three(here, 6 * j), three(here, 6 * j + 3), rests[j], 0.0
+        else:
+            p1, v1, cold, rest_rate = place_b, speed_b, z[feed], z[feed + 1]
+        rest = cold
+        if warm >= 0:
+            grown = 1.0 + lines.expansion[k] * (z[warm + j] - lines.reference[k])
+            rest, rest_rate = cold * grown, rest_rate * grown
+        chord = sub(p1, p0)
+        tension, per_metre = tighten(chord, sub(v1, v0), rest, rest_rate, stiffness[j], damping[j])
+        tensions[j] = tension
+        ahead = scale(per_metre, chord)
+        next_half = 0.5 * linear_mass[j] * cold
+        mass_out += 2.0 * next_half
+        pull = add(behind, ahead)
+        behind = scale(-1.0, ahead)
+        if exposed:
+            push = scale(0.5, segment_load(t, k, row + j, p0, v0, p1, v1, dcm_ei, lines, ambient))
+            pull, behind = add(pull, push), add(behind, push)
+        if j == 0:
+            end_a, mass_a = pull, next_half
+        else:
+            store(there, 6 * j - 6, v0)
+            store(there, 6 * j - 3, axpy(1.0 / (half + next_half), pull, weight_per_mass(p0, dcm_ei, surroundings)))
+        half = next_half
+        p0, v0 = p1, v1
+    return end_a, mass_a, behind, half, mass_out
+
+
+@inner
 def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
     """Rates of line k into `out`, its loads on the bodies into shared.outer and shared.end_mass."""
     lines, surroundings, outer = plant.lines, plant.surroundings, shared.outer
     a, b = lines.body[k, 0], lines.body[k, 1]
     point_a, slide_a = attachment(t, k, 0, plant, inputs)
     point_b, slide_b = attachment(t, k, 1, plant, inputs)
-    place_a, speed_a, q_a = line_end(z, start, a, point_a, slide_a)
-    place_b, speed_b, q_b = line_end(z, start, b, point_b, slide_b)
+    place_a, speed_a, q_a = line_end(z, start, a, plant.bodies, point_a, slide_a)
+    place_b, speed_b, q_b = line_end(z, start, b, plant.bodies, point_b, slide_b)
     nodes, row = lines.nodes[k], lines.first[k] + k
     base, feed = nodes_at(plant) + 6 * lines.first[k], feeds_at(plant) + 2 * k
-    warm = temperatures_at(plant) + lines.warm[k] if lines.warm[k + 1] > lines.warm[k] else -1
-    p0, v0 = place_a, speed_a
-    behind = NOTHING  # what the segment behind does to the point
-    half = 0.0  # mass of the half segment behind
-    mass_out = 0.0
-    end_a, mass_a = NOTHING, 0.0
-    tension = 0.0
-    for j in range(nodes + 1):
-        if j < nodes:
-            p1, v1 = three(z, base + 6 * j), three(z, base + 6 * j + 3)
-        else:
-            p1, v1 = place_b, speed_b
-        s = row + j
-        rest, rest_rate = unstretched(j, k, z, feed, warm, lines)
-        chord, chord_rate = sub(p1, p0), sub(v1, v0)
-        stretched = sqrt(dot(chord, chord))
-        tension = 0.0
-        ahead = NOTHING
-        if stretched > rest:
-            rate = dot(chord, chord_rate) / stretched - rest_rate * stretched / rest
-            tension = line_tension(stretched, rate, rest, lines.stiffness[s], lines.damping[s])
-            ahead = scale(tension / stretched, chord)
-        shared.tension[s] = tension
-        if tension > 0.0 and j == 0 and lines.joint[k, 0] > 0.0:
-            damp_joint(a, lines.joint[k, 0], point_a, q_a, three(z, TANGENT * a + 9), chord, chord_rate, log, outer)
-        if tension > 0.0 and j == nodes and lines.joint[k, 1] > 0.0:
-            back, back_rate = scale(-1.0, chord), scale(-1.0, chord_rate)
-            damp_joint(b, lines.joint[k, 1], point_b, q_b, three(z, TANGENT * b + 9), back, back_rate, log, outer)
-        next_half = 0.5 * lines.linear_mass[s] * (z[feed] if j == nodes else lines.rest[s])
-        mass_out += 2.0 * next_half
-        push = scale(0.5, segment_load(t, k, s, p0, v0, p1, v1, dcm_ei, lines, shared.ambient)) if lines.exposed[k] else NOTHING
-        pull = add(add(behind, ahead), push)
-        if j == 0:
-            end_a, mass_a = pull, next_half
-        else:
-            at = base + 6 * (j - 1)
-            store(out, at, v0)
-            store(out, at + 3, axpy(1.0 / (half + next_half), pull, weight_per_mass(p0, dcm_ei, surroundings)))
-        behind = sub(push, ahead)
-        half = next_half
-        p0, v0 = p1, v1
+    ends = (place_a, speed_a, place_b, speed_b)
+    end_a, mass_a, end_b, half, mass_out = pull_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out)
+    if nodes == 0:
+        first, first_rate, last, last_rate = place_b, speed_b, place_a, speed_a
+    else:
+        first, first_rate = three(z, base), three(z, base + 3)
+        last, last_rate = three(z, base + 6 * nodes - 6), three(z, base + 6 * nodes - 3)
+    back, back_rate = sub(last, place_b), sub(last_rate, speed_b)
+    if lines.joint[k, 0] > 0.0 and shared.tension[row] > 0.0:
+        chord, chord_rate = sub(first, place_a), sub(first_rate, speed_a)
+        damp_joint(a, lines.joint[k, 0], point_a, q_a, three(z, TANGENT * a + 9), chord, chord_rate, log, outer)
+    if lines.joint[k, 1] > 0.0 and shared.tension[row + nodes] > 0.0:
+        damp_joint(b, lines.joint[k, 1], point_b, q_b, three(z, TANGENT * b + 9), back, back_rate, log, outer)
     out[feed] = 0.0
     out[feed + 1] = 0.0
-    end_b = behind
     if lines.reel[k] != NO_REEL:
         out[feed] = z[feed + 1]
+        tension = shared.tension[row + nodes]
         out[feed + 1] = feed_acceleration(lines.reel[k], inputs.reel[k], z[feed + 1], tension, lines.reel_lag[k])
-        last, last_rate = (place_a, speed_a) if nodes == 0 else (three(z, base + 6 * nodes - 6), three(z, base + 6 * nodes - 3))
         linear_mass = lines.linear_mass[row + nodes]
-        chord, chord_rate = sub(last, place_b), sub(last_rate, speed_b)
-        on_node, on_reel = feed_loads(chord, chord_rate, z[feed], z[feed + 1], out[feed + 1], linear_mass)
+        on_node, on_reel = feed_loads(back, back_rate, z[feed], z[feed + 1], out[feed + 1], linear_mass)
         end_b = add(end_b, on_reel)
         if nodes == 0:
             end_a = add(end_a, on_node)

@@ -155,7 +155,7 @@ def attach(t, k, z, start, plant, inputs, axes):
     """A line's attachments, in the bodies and in inertial axes."""
     for end in range(2):
         point, rate = attachment(t, k, end, plant, inputs)
-        place, speed, _ = line_end(z, start, plant.lines.body[k, end], point, rate)
+        place, speed, _ = line_end(z, start, plant.lines.body[k, end], plant.bodies, point, rate)
         store(axes.point[k], 3 * end, point)
         store(axes.attached[k], 6 * end, place)
         store(axes.attached[k], 6 * end + 3, speed)

@@ -27,7 +27,7 @@ KNOWLEDGE = 7  # numbers of an estimator's answer
 SILENT, ANSWERED = 1, 2  # an estimator's last call
 
 
-@inner
+@merged
 def measurement_of(boards, b):
     """Row b as what a law sees: views, not copies."""
     sun = boards.sun_sensor[b]
@@ -68,7 +68,7 @@ def read_lines(t, b, run):
                 at += 1
 
 
-@merged
+@inner
 def refresh(t, b, reference, run):
     """What is known at any time: commands in effect, orbit where no receiver reads it, wheels' speeds, reference field."""
     y, plant, sensors, boards, actuators = run.y, run.plant, run.sensors, run.boards, run.actuators
@@ -140,7 +140,7 @@ def ask(laws, slot, t, measurement, memory, params, reply):
     return answer.shape[0]
 
 
-@merged
+@inner
 def run_task(t, i, run, laws, memories, parameters, call):
     """Run task i; 0 or the outcome that ends the run, with the culprit noted."""
     boards, tasks, shared = run.boards, run.tasks, run.shared

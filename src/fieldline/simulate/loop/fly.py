@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import ceil
 
-from fieldline.compiled import inner, kernel, merged
+from fieldline.compiled import inner, kernel
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M
 from fieldline.dynamics.implicit_step import allow_motion, attempt_implicit
 from fieldline.dynamics.layout import nodes_at, three
@@ -25,7 +25,7 @@ from fieldline.dynamics.rates import FINITE, NOT_FINITE, RAISED, field_at, plant
 from fieldline.dynamics.step import attempt, lift, settle
 from fieldline.environment.eclipse import sunlit_kernel
 from fieldline.environment.ephemeris import dcm_ei_kernel, sun_kernel
-from fieldline.frames.vectors import norm, put
+from fieldline.frames.vectors import dot, norm, put
 from fieldline.integrate.rosenbrock import stage_error
 from fieldline.integrate.steps import error_norm, error_scale, next_step
 from fieldline.simulate.loop.commands import cease_fire, next_ceasing, next_command, next_filling, obey, switch_torquers
@@ -55,7 +55,7 @@ EVENT_FAILED = int(Outcome.EVENT_FAILED)
 LOAD_RAISED, LOAD_SHAPE, LOAD_NOT_FINITE = int(Outcome.LOAD_RAISED), int(Outcome.LOAD_SHAPE), int(Outcome.LOAD_NOT_FINITE)
 COARSEST_TURN = 1.0  # [rad] of a fixed step: beyond it the wobble of a body is no longer followed
 SHORTEST = 1e-9  # [s] of an adaptive step
-SAFE_RADIUS_M = EARTH_EQUATORIAL_RADIUS_M + 100e3  # above any height at which a run ends
+SAFE_SQUARE = (EARTH_EQUATORIAL_RADIUS_M + 100e3) ** 2  # [m^2] of a radius above any height at which a run ends
 
 
 @inner
@@ -152,7 +152,7 @@ def look_around(t, period, run):
     refresh(t, 0.5 * period, run.record.z, run.record.start, run.plant, run.inputs, run.shared.ambient)
 
 
-@merged
+@inner
 def do_due(t, run, laws, memories, parameters, loads, call, rng):
     """Everything that is due at t; 0 or the outcome that ends the run."""
     schedule = run.schedule
@@ -198,13 +198,16 @@ def fixed_length(t, due, run):
 @inner
 def sound(t, y, plant, stepping):
     """0, or the outcome that a state without meaning has."""
+    lost = 0
     for j in range(y.shape[0]):
-        if not abs(y[j]) < 1e300:
-            return BROKEN
+        lost += 0 if abs(y[j]) < FINITE else 1
+    if lost > 0:
+        return BROKEN
     for b in range(plant.bodies.mass.shape[0]):
-        if norm(three(y, STATE * b)) > SAFE_RADIUS_M:
+        place = three(y, STATE * b)
+        if dot(place, place) > SAFE_SQUARE:
             continue
-        if height_of(t, three(y, STATE * b), plant) < stepping.floor:
+        if height_of(t, place, plant) < stepping.floor:
             return GROUND
     return grounded_node(t, y, plant, stepping.floor)
 
@@ -216,7 +219,7 @@ def grounded_node(t, y, plant, floor):
     for k in range(plant.lines.nodes.shape[0]):
         for j in range(plant.lines.nodes[k]):
             r = three(y, at + 6 * (plant.lines.first[k] + j))
-            if norm(r) <= SAFE_RADIUS_M and height_of(t, r, plant) < floor:
+            if dot(r, r) <= SAFE_SQUARE and height_of(t, r, plant) < floor:
                 return GROUND
     return 0
 
@@ -250,7 +253,7 @@ def step_error(h, implicit, plant, stepping, work):
     return error_norm(h, work.k, stepping.tableau.e3, stepping.tableau.e5, work.scale)
 
 
-@merged
+@inner
 def advance(t, due, run, loads, call):
     """One step of the plant towards `due`; (outcome, time reached)."""
     plant, stepping, clock, shared, work = run.plant, run.stepping, run.clock, run.shared, run.work

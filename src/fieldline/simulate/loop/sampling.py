@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fieldline.compiled import inner, merged
+from fieldline.compiled import inner
 from fieldline.dynamics.layout import three
 from fieldline.dynamics.loads.magnetic import commanded_dipole
 from fieldline.dynamics.parameters import STATE
@@ -32,7 +32,7 @@ def keep(t, row, values, record, clock):
             record.samples[place, 2 + j] = values[j]
 
 
-@merged
+@inner
 def sample(t, row, kind, b, run, rng):
     """Read one sensor of body b."""
     y, plant, sensors, boards, record, clock = run.y, run.plant, run.sensors, run.boards, run.record, run.clock
