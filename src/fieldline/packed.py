@@ -80,19 +80,22 @@ def array_type(dtype: np.dtype, axes: int, writeable: bool) -> types.Array:
 
 
 class Packed:
-    """A NamedTuple of arrays, numbers, tuples of numbers and such NamedTuples, for compiled code; see the module."""
+    """A NamedTuple of arrays, numbers, tuples of numbers and such NamedTuples, for compiled code; see the module.
 
-    __slots__ = ("_numba_type_", "address", "record", "words")
+    Its own names begin with an underscore, which no field of a NamedTuple does.
+    """
+
+    __slots__ = ("_address", "_numba_type_", "_record", "_words")
 
     def __init__(self, record):
-        self.record = record
+        self._record = record
         words = bytearray()
         self._numba_type_ = _write(record, words, type(record).__name__)
-        self.words = np.frombuffer(words, dtype=np.int64)
-        self.address = self.words.ctypes.data
+        self._words = np.frombuffer(words, dtype=np.int64)
+        self._address = self._words.ctypes.data
 
     def __getattr__(self, name: str):
-        return getattr(self.record, name)
+        return getattr(self._record, name)
 
 
 def _write(record, words: bytearray, where: str) -> PackedType:
@@ -129,7 +132,7 @@ class PackedModel(models.PrimitiveModel):
 @unbox(PackedType)
 def take_address(kind, packed, c):
     """The address out of the Python object."""
-    number = c.pyapi.object_getattr_string(packed, "address")
+    number = c.pyapi.object_getattr_string(packed, "_address")
     address = c.pyapi.long_as_voidptr(number)
     c.pyapi.decref(number)
     return NativeValue(c.builder.bitcast(address, ir.IntType(64).as_pointer()))

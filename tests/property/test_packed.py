@@ -31,8 +31,8 @@ class Outside(NamedTuple):
 
 
 class Word(NamedTuple):
-    used: bool
-    count: int
+    record: bool
+    words: int
 
 
 @kernel
@@ -113,8 +113,9 @@ WAYS = ((1, 2, 3, True, 1.0, 2, (0.5, 0.25)), (2, 3, 1, False, 2.0, 3, (1.0, 2.0
 
 def test_numpy_numbers_are_numbers():
     packed = Packed(Word(np.bool_(True), np.int64(-3)))
+    assert packed.record and packed.words == -3
     assert packed._numba_type_ == Packed(Word(False, 7))._numba_type_
-    assert packed.words.tolist() == [1, -3]
+    assert packed._words.tolist() == [1, -3]
 
 
 def test_an_array_that_is_not_whole_is_refused_by_name():
