@@ -46,11 +46,17 @@ class Parameter:
 
 @dataclass(frozen=True)
 class LineEnd:
-    """End of a line on the body: attachment [m], mode of a reel there ("" for none), directions in which it slides."""
+    """End of a line on the body: attachment [m], mode of a reel there ("" for none), directions in which it slides.
+
+    shortest_m, longest_m: unstretched length that the reel can leave out [m]; lag_s: time constant of its rate.
+    """
 
     point_b_m: tuple[float, float, float]
     reel: str = ""
     slider_axes_b: tuple[tuple[float, float, float], ...] = ()
+    shortest_m: float = 0.0
+    longest_m: float = 1e300
+    lag_s: float = 0.0
 
 
 @dataclass(frozen=True)

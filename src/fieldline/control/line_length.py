@@ -13,6 +13,13 @@ swings ever wider. (50) makes the in-plane swing decay at n K_th, less c_in, wha
 out as the line swings through the vertical and takes in where it turns, which holds a small swing to about
 ph^2 = 2 c_in / (n K_ph).
 
+A reel ends at L_min and L_max. Towards either a rate is held to what brings the line to rest there,
+
+    -(L - L_min) / t_b <= r <= (L_max - L) / t_b,    t_b = 4 (lag + period)                                  (51b)
+
+which with t_b = 4 lag is the fastest approach of a reel with a lag that does not run over; the period is that of the law's
+calls.
+
 Sources: Rupp (1975), NASA TM X-64963; SAO (1982), section 3.2, after Kalaghan et al. (1978), for deployment; (51) from
 the equations of two masses on a massless line, own derivation.
 """
@@ -24,16 +31,18 @@ from math import asin, atan2, isfinite, sin
 import numpy as np
 from numba import njit
 
-from fieldline.control.law import Parameter
+from fieldline.control.law import LineEnd, Parameter
 from fieldline.control.orbital_axes import orbital_rate
 from fieldline.control.readings import finite3, lifted, orbit_known
 from fieldline.errors import InputError
 from fieldline.frames.vectors import cross, dot, norm, scale, sub, unit
 
-LINE, TARGET, LATER, SECOND, APPROACH, OUT, IN, FASTEST, IN_PLANE, ACROSS, MOTION = range(11)
-SIZE = 11
+LINE, TARGET, LATER, SECOND, APPROACH, OUT, IN, FASTEST, IN_PLANE, ACROSS, MOTION, SHORTEST, LONGEST, BRAKE = range(14)
+SIZE = 14
 NEVER = 1e300  # [s]
 LEAN_RAD = 0.349065850398866  # 20 degrees, of the line while it is paid out at the rate that is derived
+BRAKING = 4.0  # of (51b)
+NO_END = LineEnd((0.0, 0.0, 0.0))
 MOST_OF_MOTION = 0.75  # c_out / n beyond which no angle holds the line
 
 
@@ -80,7 +89,11 @@ def wanted_rate(t, measurement, params, first):
         if known:
             wave = across * across - (across_rate / (2.0 * n)) ** 2
             rate -= length * (params[first + IN_PLANE] * in_plane + params[first + ACROSS] * n * wave)
-    return True, min(max(rate, -params[first + FASTEST]), params[first + FASTEST])
+    rate = min(max(rate, -params[first + FASTEST]), params[first + FASTEST])
+    if params[first + BRAKE] > 0.0:  # (51b)
+        rate = min(rate, max(params[first + LONGEST] - length, 0.0) / params[first + BRAKE])
+        rate = max(rate, -max(length - params[first + SHORTEST], 0.0) / params[first + BRAKE])
+    return True, rate
 
 
 TARGETS = {
@@ -95,7 +108,9 @@ PARAMETERS = {
     ),
     "rate_in_per_s": Parameter("1/s", "c_in, derived: 0.2 n", kind="positive", derived=True),
     "approach_per_s": Parameter("1/s", "a, derived: 0.75 n", kind="positive", derived=True),
-    "rate_max_m_s": Parameter("m/s", "largest rate that is asked for", 100.0, "positive"),
+    "rate_max_m_s": Parameter(
+        "m/s", "largest rate that is asked for; under a tension the line keeps to it within a sixth", 100.0, "positive"
+    ),
     "in_plane_damping": Parameter(
         "", "K_th, which needs the place of the first body at the line's other end", 0.0, "not negative"
     ),
@@ -117,14 +132,24 @@ def packed_length(law: str, values: dict, context) -> np.ndarray:
     approach = MOST_OF_MOTION * n if values["approach_per_s"] is None else values["approach_per_s"]
     damping = [values["in_plane_damping"], values["out_of_plane_damping"]]
     line = reel_of(law, context)
-    return np.array([line, *packed_targets(law, values), approach, out, *pace, values["rate_max_m_s"], *damping, n])
+    ends = context.lines[line] if context.lines else NO_END
+    brake = [ends.shortest_m, ends.longest_m, BRAKING * (ends.lag_s + context.period_s)]
+    targets = packed_targets(law, values, context, line)
+    return np.array([line, *targets, approach, out, *pace, values["rate_max_m_s"], *damping, n, *brake])
 
 
-def packed_targets(law: str, values: dict) -> list[float]:
-    """First target, time of the second, second target; InputError for one of the latter without the other."""
+def packed_targets(law: str, values: dict, context, line: int) -> list[float]:
+    """First target, time of the second, second target; InputError for one of the latter without the other, or out of reach."""
     when, second = values["second_from_s"], values["second_target_length_m"]
     if (when is None) != (second is None):
         raise InputError(f'the law "{law}" needs second_from_s and second_target_length_m together, or neither.')
+    ends = context.lines[line] if context.lines else NO_END
+    for key in ("target_length_m", "second_target_length_m"):
+        if values[key] is not None and not ends.shortest_m <= values[key] <= ends.longest_m:
+            raise InputError(
+                f'{key} of the law "{law}" must be what the reel can do, from shortest_length_m = {ends.shortest_m:g} m to '
+                f"total_length_m = {ends.longest_m:g} m; got {values[key]:g} m."
+            )
     first = values["target_length_m"]
     return [first, NEVER, first] if when is None else [first, when, second]
 

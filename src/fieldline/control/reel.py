@@ -11,26 +11,33 @@ stretch e = L / L_t - 1 and swing th in the orbit's plane then obey
     e'' + 4 n e' + 3 n^2 e = 2 n th',   th'' + 3 n^2 th = -2 n e'                                          (55)
 
 whose four roots are twice -n (1 +- i sqrt 2): no other k and a make the slowest motion die faster. In retrieval the
-same coupling holds the in-plane swing while c_in is below about 0.4 n.
+same coupling holds the in-plane swing while c_in is below about 0.4 n. Where the line runs towards the end of what the reel
+holds, and would not stop within L' / k, it is stopped evenly over x, three quarters of the room that is left:
+
+    T >= m (g L + L'^2 / (2 x)) out,    T <= m (g L - L'^2 / (2 x)) in                                      (56)
+    g = ph'^2 + ((th' - n) cos ph)^2 + n^2 (3 (cos th cos ph)^2 - 1)
+
+g being 3 n^2 at rest, and where the swing is not known.
 
 Sources: Rupp (1975), NASA TM X-64963, for a tension that is linear in length and rate; the gains are own derivation.
 """
 
 from __future__ import annotations
 
-from math import isfinite, sqrt
+from math import cos, isfinite, sqrt
 
 import numpy as np
 from numba import njit
 
 from fieldline.control import line_length
 from fieldline.control.law import Law, Parameter, complete
-from fieldline.control.line_length import packed_length, packed_targets, reel_of, wanted_length, wanted_rate
+from fieldline.control.line_length import packed_length, packed_targets, reel_of, swing, wanted_length, wanted_rate
 
 FAR_MASS, LINEAR_MASS, GAIN, LEAST, MOTION = range(line_length.SIZE, line_length.SIZE + 5)
 LINE, TARGET = range(2)
 SPEED, ACCELERATION, SETTLING = range(4, 7)  # after the two targets
 CALLED, ASKED, HAS_CALLED = range(3)
+STOPPING, HAIR = 0.75, 1e-4  # of the room that is left; of the length, kept for what the tension does between two calls
 
 
 @njit(cache=True)
@@ -72,6 +79,15 @@ def reel_profile(t, measurement, memory, params):
 
 
 @njit(cache=True)
+def held_by(measurement, n):
+    """g of (56) [1/s^2]: what holds a line of constant length taut, by its mass and length."""
+    known, th, in_plane, ph, across = swing(measurement)
+    if not known:
+        return 3.0 * n * n
+    return across**2 + ((in_plane - n) * cos(ph)) ** 2 + n * n * (3.0 * (cos(th) * cos(ph)) ** 2 - 1.0)
+
+
+@njit(cache=True)
 def reel_tension(t, measurement, memory, params):
     """Equation (54); the tension of the last call where the length is not known."""
     known, wanted = wanted_rate(t, measurement, params, 0)
@@ -79,7 +95,14 @@ def reel_tension(t, measurement, memory, params):
     if known and isfinite(measurement.line_rate[j]):
         length, n = measurement.line_length[j], params[MOTION]
         mass = params[FAR_MASS] + 0.5 * params[LINEAR_MASS] * length
-        tension = mass * (3.0 * n * n * length + params[GAIN] * (measurement.line_rate[j] - wanted))
+        rate = measurement.line_rate[j]
+        tension = mass * (3.0 * n * n * length + params[GAIN] * (rate - wanted))
+        room = params[line_length.LONGEST] - length if rate > 0.0 else length - params[line_length.SHORTEST]
+        room -= HAIR * length
+        if room < abs(rate) / params[GAIN] and rate != 0.0:  # (56)
+            stop = 0.5 * rate * rate / max(STOPPING * room, abs(rate) * params[line_length.BRAKE])
+            held = mass * length * held_by(measurement, n)
+            tension = max(tension, held + mass * stop) if rate > 0.0 else min(tension, held - mass * stop)
         memory[ASKED] = max(tension, params[LEAST])
     return _one(memory[ASKED])
 
@@ -110,7 +133,7 @@ def _pack_profile(table, context) -> np.ndarray:
     values = complete("reel-profile", PROFILE_PARAMETERS, table)
     line = reel_of("reel-profile", context, "rate")
     keys = ("rate_m_s", "acceleration_m_s2", "settling_s")
-    return np.array([line, *packed_targets("reel-profile", values), *(values[key] for key in keys)], dtype=float)
+    return np.array([line, *packed_targets("reel-profile", values, context, line), *(values[key] for key in keys)], dtype=float)
 
 
 def _pack_tension(table, context) -> np.ndarray:

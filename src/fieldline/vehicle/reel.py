@@ -23,7 +23,7 @@ class Reel(Record):
     rate_m_s: float = Field(
         default=0.0, description="rate at the start, positive out; in mode rate also the command until a law speaks [m/s]"
     )
-    rate_max_m_s: float = Field(default=20.0, gt=0.0, description="largest command of a rate, either sign [m/s]")
+    rate_max_m_s: float = Field(default=20.0, gt=0.0, description="in mode rate: largest command, either sign [m/s]")
     lag_s: float = Field(default=1.0, gt=0.0, description="time constant with which the rate follows its command [s]")
     tension_n: float = Field(default=0.0, ge=0.0, description="in mode tension: pull of the motor until a law speaks [N]")
     tension_max_n: float = Field(default=1e3, gt=0.0, description="largest command of a tension [N]")

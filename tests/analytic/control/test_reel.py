@@ -53,10 +53,10 @@ def measured(measurement, state, tension):
     measurement.tension[:], measurement.line_length[:], measurement.line_rate[:] = tension, length, rate
 
 
-def flown(name, table, state, seconds, step=4.0):
+def flown(name, table, state, seconds, step=4.0, context=PLAIN):
     """(seconds, states, commands) of a law that is called every step."""
     law = LAWS[name]
-    params, memory = law.pack(table, PLAIN), np.zeros(law.memory)
+    params, memory = law.pack(table, context), np.zeros(law.memory)
     measurement, state = new_measurement(0, 0, 1), np.array(state, dtype=float)
     times = np.arange(0.0, seconds, step)
     kept, told = [], []
@@ -190,3 +190,53 @@ def test_the_line_of_the_reel_is_the_one_that_is_read():
     measurement.line_length[:] = (9000.0, 100.0)
     params = law.pack({"target_length_m": 200.0, "rate_out_per_s": 1e-4, "approach_per_s": 1.0}, context)
     assert law.kernel(0.0, measurement, np.zeros(1), params)[0] == pytest.approx(1e-2)
+
+
+def reeled(mode, shortest, longest, lag=1.0):
+    """A context whose one line has a reel of these ends."""
+    return replace(PLAIN, lines=(LineEnd((0.0, 0.0, 1.0), mode, (), shortest, longest, lag),))
+
+
+@pytest.mark.parametrize("name", ["reel-exponential", "reel-profile", "reel-tension"])
+@pytest.mark.parametrize("key", ["target_length_m", "second_target_length_m"])
+@pytest.mark.parametrize("target", [15.0, 20.1e3])
+def test_a_target_that_the_reel_has_not_is_refused(name, key, target):
+    table = {"target_length_m": 1e3, "second_from_s": 9.0, "second_target_length_m": 1e3} | {key: target}
+    table |= {"reel-profile": {"rate_m_s": 1.0}, "reel-tension": {"far_mass_kg": 1.0}}.get(name, {})
+    context = reeled("tension" if name == "reel-tension" else "rate", 20.0, 20e3)
+    with pytest.raises(InputError, match=rf"{key} of the law .* from shortest_length_m = 20 m to total_length_m = 20000 m; got"):
+        LAWS[name].pack(table, context)
+
+
+@pytest.mark.parametrize(("start", "rate", "ends"), [(9.9e3, 3.0, (50.0, 10e3)), (150.0, -3.0, (100.0, 10e3))])
+def test_a_rate_dies_away_before_the_end_of_the_reel(start, rate, ends):
+    """Whatever the gains and the swing ask for, with the reel's lag it does not run over; without the ends it does."""
+    table = {
+        "target_length_m": ends[1] if rate > 0.0 else ends[0],
+        "approach_per_s": 5.0,
+        "rate_max_m_s": 3.0,
+        "rate_in_per_s": 9.0,
+    }
+    table["out_of_plane_damping"] = 60.0 if rate > 0.0 else 0.0
+    state = (0.0, 0.0, 0.0, 6e-4, start, rate)
+    lined = replace(reeled("rate", *ends), period_s=1.0)
+    length = flown("reel-exponential", table, state, 200.0, 1.0, lined)[1][:, 4]
+    assert ends[0] <= length.min() and length.max() <= ends[1]
+    assert min(length.min() - ends[0], ends[1] - length.max()) < 1.0
+    free = flown("reel-exponential", table, state, 200.0, 1.0)[1][:, 4]
+    assert free.min() < ends[0] - 1.0 or free.max() > ends[1] + 1.0
+
+
+def test_tension_keeps_near_its_rate_and_stops_before_the_end():
+    """The swing carries it some hundred metres past the target; a reel that ends there is not run over."""
+    table = {"target_length_m": 20e3, "far_mass_kg": MASS, "tension_min_n": 0.005, "rate_max_m_s": 4.0}
+    start, orbits = (0.3, 0, 0.01, 0, 100.0, 0.1), 4.0 * 2.0 * pi / N
+    free = flown("reel-tension", table, start, orbits)[1]
+    assert free[:, 4].max() > 20.3e3 and free[:, 5].max() < 4.0 * 7.0 / 6.0
+    held = flown("reel-tension", table, start, orbits, 4.0, reeled("tension", 50.0, 20.05e3))[1]
+    assert held[:, 4].max() < 20.05e3 and held[-1, 4] == pytest.approx(20e3, rel=2e-3)
+    back = table | {"target_length_m": 500.0, "rate_max_m_s": 2.0}
+    free = flown("reel-tension", back, (0.0, 0, 0.01, 0, 20e3, 0.0), orbits)[1]
+    assert free[:, 4].min() < 480.0 and free[:, 5].min() > -2.0 * 7.0 / 6.0
+    held = flown("reel-tension", back, (0.0, 0, 0.01, 0, 20e3, 0.0), orbits, 4.0, reeled("tension", 490.0, 20.05e3))[1]
+    assert held[:, 4].min() > 490.0 and held[-1, 4] == pytest.approx(500.0, abs=15.0)

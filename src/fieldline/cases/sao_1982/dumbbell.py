@@ -7,10 +7,12 @@
 
 (4) are the critical dampings of the line's stretch and of the small swing of a body of inertia I on a lever d.
 
-A line with mass is a string of beads, m at equal distances; the pair turns at n with n^2 sum m r = GM sum m / r^2, and from
-the lower end up each bead adds to the tension
+A line with mass has it in nodes at equal distances, and half of a segment's at either end; the whole turns at n with
+n^2 sum m r = GM sum m / r^2, and from the lower end up each mass adds to the tension
 
-    T_(j+1) = T_j + m (GM / r_j^2 - n^2 r_j),    T_1 = m1 (GM / r1^2 - n^2 r1)                               (5)
+    T_(j+1) = T_j + m_j (GM / r_j^2 - n^2 r_j),    T_1 = (m1 + m/2) (GM / r1^2 - n^2 r1)                     (5)
+
+of which the lower mass itself feels m1's part.
 Source: Arnold (1978), Annex III of NASA-CR-170721.
 """
 
@@ -23,7 +25,7 @@ import numpy as np
 from fieldline.cases.erbs_like import number
 from fieldline.errors import InputError
 
-MOST_BEADS = 200
+MOST_NODES = 200
 
 
 class Dumbbell(NamedTuple):
@@ -54,34 +56,32 @@ def dumbbell(lower_mass_kg: float, upper_mass_kg: float, lower_radius_m: float, 
     return Dumbbell(m1, m2, r1, r2, float(np.sqrt(gm / mean**3)), float(mean), float(tension))
 
 
-class Beads(NamedTuple):
-    """A line with mass in the common circular motion, from the lower end up."""
+class Strung(NamedTuple):
+    """Two masses and what is between them in the common circular motion."""
 
-    dumbbell: Dumbbell  # with the whole's rate, and the tension at the lower end
-    mass_kg: float  # of each bead
-    radius_m: np.ndarray  # (n,)
-    tension_n: np.ndarray  # (n + 1,) of the stretches between
-
-    @property
-    def count(self) -> int:
-        """Beads."""
-        return len(self.radius_m)
+    dumbbell: Dumbbell  # with the whole's rate, and the pull on the lower mass alone
+    nodes: int
+    line_mass_kg: float
+    tension_n: np.ndarray  # (nodes + 1,) of the segments, from the lower end up
 
 
-def beads_on(two: Dumbbell, nodes: int, line_mass_kg: float, gm: float) -> Beads:
-    """`nodes` beads (0: none) that share line_mass_kg, evenly between the two masses; equation (5)."""
-    if isinstance(nodes, bool) or not isinstance(nodes, int) or not 0 <= nodes <= MOST_BEADS:
-        raise InputError(f"nodes must be a whole number from 0 to {MOST_BEADS}; got {nodes!r}.")
-    if nodes == 0 and line_mass_kg != 0.0:
-        raise InputError("line_mass_kg needs nodes that carry it; give nodes = 1 or more.")
-    each = number("line_mass_kg", line_mass_kg, 1e-6, 1e6) / nodes if nodes else 0.0
+def strung(two: Dumbbell, nodes: int, line_mass_kg: float, gm: float) -> Strung:
+    """Two masses on a line of line_mass_kg with `nodes` (0: without mass) evenly between them; equation (5)."""
+    if isinstance(nodes, bool) or not isinstance(nodes, int) or not 0 <= nodes <= MOST_NODES:
+        raise InputError(f"nodes must be a whole number from 0 to {MOST_NODES}; got {nodes!r}.")
+    if nodes == 0:
+        if line_mass_kg != 0.0:
+            raise InputError("line_mass_kg needs nodes that carry it; give nodes = 1 or more.")
+        return Strung(two, 0, 0.0, np.array([two.tension_n]))
+    each = number("line_mass_kg", line_mass_kg, 1e-6, 1e6) / (nodes + 1)
     radii = np.linspace(two.lower_radius_m, two.upper_radius_m, nodes + 2)
-    masses = np.array([two.lower_mass_kg, *[each] * nodes, two.upper_mass_kg])
+    masses = np.array([two.lower_mass_kg + 0.5 * each, *[each] * nodes, two.upper_mass_kg + 0.5 * each])
     rate = float(np.sqrt(gm * (masses / radii**2).sum() / (masses * radii).sum()))
     tension = np.cumsum(masses * (gm / radii**2 - rate**2 * radii))[:-1]  # (5)
     mean = float((gm / rate**2) ** (1.0 / 3.0))
-    whole = two if nodes == 0 else two._replace(orbital_rate_rad_s=rate, mean_radius_m=mean, tension_n=float(tension[0]))
-    return Beads(whole, each, radii[1:-1], tension if nodes else np.array([two.tension_n]))
+    pull = float(tension[0]) * two.lower_mass_kg / float(masses[0])
+    whole = two._replace(orbital_rate_rad_s=rate, mean_radius_m=mean, tension_n=pull)
+    return Strung(whole, nodes, line_mass_kg, tension)
 
 
 def natural_length(length_m: float, tension_n: float, stiffness_n: float) -> float:

@@ -1,4 +1,4 @@
-"""A rigid subsatellite below a point mass on a massless line, as a scenario of the plant.
+"""A rigid subsatellite below a point mass on a line, as a scenario of the plant.
 
 The Shuttle starts on the x axis at r2 and moves along y (for an inclination, towards z as well); the attachment, or the
 centre of mass, is straight below it at r1. With e small, x' = rbar n e is added to both. Unless told otherwise,
@@ -8,8 +8,8 @@ centre of mass, is straight below it at r1. With e small, x' = rbar n e is added
     centre             centre of mass at r1, moving at r1 n                                                  (3)
 
 The unstretched length is that which balances the tension of the pair at the length from the Shuttle to the attachment. A
-line with mass is a string of beads, point masses on lines without mass; they start on the straight line, turning with the
-pair. The Earth is a point of the program's GM; what else surrounds the two masses acts on them alone.
+line with mass has nodes, which start on the straight line as its tension spaces them and turn with the pair. The Earth is a
+point of the program's GM; what else surrounds the two masses acts on them alone.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.cases.erbs_like import number
-from fieldline.cases.sao_1982.dumbbell import Beads, Dumbbell, critical_damping, dumbbell, natural_length
+from fieldline.cases.sao_1982.dumbbell import Dumbbell, Strung, critical_damping, dumbbell, natural_length
 from fieldline.cases.sao_1982.euler_angles import body_rate, direction_cosines
 from fieldline.cases.sao_1982.surroundings import EARTH_RADIUS_M, GM_M3_S2, J2, load_parameters
 from fieldline.errors import InputError, nearest
@@ -28,6 +28,7 @@ from fieldline.frames.attitude import quaternion_from_dcm
 SOURCE = "Smithsonian Astrophysical Observatory (1982), NASA-CR-170721"
 PLACEMENTS = ("attachment", "attachment-rigid", "centre")
 HERE = "fieldline.cases.sao_1982"
+LINE = "tether"
 START_UTC = "1982-10-01T00:00:00Z"  # gravity is a point's: the date plays no part
 EXACT = {
     "method": "dop853",
@@ -49,7 +50,7 @@ class Pair(NamedTuple):
     stiffness_n: float  # EA
     damping: float | str  # b [N s/m] or "critical"
     angular_damping_n_m_s: float = 0.0
-    beads: Beads | None = None
+    strung: Strung | None = None  # of a line with mass
 
 
 class Start(NamedTuple):
@@ -112,30 +113,23 @@ def damping_of(pair: Pair, rest_m: float) -> float:
     return number("damping", pair.damping, 0.0)
 
 
-def line_records(pair: Pair, length_m: float) -> list[dict]:
-    """The line's stretches from the subsatellite up, each of the length that balances its tension."""
-    beads = pair.beads
-    tensions = [pair.dumbbell.tension_n] if beads is None else beads.tension_n
-    rests = [natural_length(length_m / len(tensions), float(tension), pair.stiffness_n) for tension in tensions]
-    whole = sum(rests)
-    names = ["subsatellite", *bead_names(pair), "shuttle"]
-    found = [
-        {
-            "from_body": below,
-            "to_body": above,
-            "rest_length_m": rest,
-            "stiffness_n": float(pair.stiffness_n),
-            "damping_n_s": damping_of(pair, whole) * whole,
-        }
-        for below, above, rest in zip(names[:-1], names[1:], rests, strict=True)
-    ]
-    found[0] |= {"from_point_b_m": floats(pair.lever_b_m), "from_joint_damping_n_m_s": float(pair.angular_damping_n_m_s)}
+def line_record(pair: Pair, length_m: float) -> dict:
+    """The line from the subsatellite up, of the length that balances its tension."""
+    tension = pair.dumbbell.tension_n if pair.strung is None else float(pair.strung.tension_n.mean())
+    rest = natural_length(length_m, tension, pair.stiffness_n)
+    found = {
+        "name": LINE,
+        "from_body": "subsatellite",
+        "to_body": "shuttle",
+        "from_point_b_m": floats(pair.lever_b_m),
+        "from_joint_damping_n_m_s": float(pair.angular_damping_n_m_s),
+        "rest_length_m": rest,
+        "stiffness_n": float(pair.stiffness_n),
+        "damping_n_s": damping_of(pair, rest) * rest,
+    }
+    if pair.strung is not None and pair.strung.nodes > 0:
+        found |= {"nodes": pair.strung.nodes, "mass_per_length_kg_m": float(pair.strung.line_mass_kg / rest)}
     return found
-
-
-def bead_names(pair: Pair) -> list[str]:
-    """Names of the beads from below."""
-    return [f"bead_{k + 1}" for k in range(0 if pair.beads is None else pair.beads.count)]
 
 
 def scenario_of(
@@ -160,7 +154,7 @@ def scenario_of(
     from fieldline.simulate.scenario import Scenario
 
     places, velocities, lever = states(pair, start, inclination_deg, eccentricity)
-    lines = line_records(pair, float(np.linalg.norm(places[0] - places[1] - lever)))
+    line = line_record(pair, float(np.linalg.norm(places[0] - places[1] - lever)))
     bodies = [
         {"name": "shuttle", "kind": "point", "mass_kg": pair.dumbbell.upper_mass_kg},
         {
@@ -175,9 +169,7 @@ def scenario_of(
     upper_air = {**air, "drag_area_m2": air["upper_drag_area_m2"]} if air and "upper_drag_area_m2" in air else None
     for body, its_air in zip(bodies, (upper_air, air), strict=True):
         body["load"] = _loads(body["mass_kg"], oblate, anomaly, its_air)
-    string, string_places, string_velocities = _string(pair, places, velocities, lever, inclination_deg, eccentricity)
-    everything = bodies + string
-    _put_beside(everything, np.vstack([places, string_places]), np.vstack([velocities, string_velocities]))
+    bodies[1] |= _beside(places, velocities)
     return Scenario.from_dict(
         {
             "name": name,
@@ -189,8 +181,8 @@ def scenario_of(
             "integrator": EXACT,
             "environment": {"gravity": "point", "gravity_gm_m3_s2": GM_M3_S2, "uniform_field_i_tesla": [1e-9, 0.0, 0.0]},
             "orbit": {"state": {"position_km": floats(1e-3 * places[0]), "velocity_km_s": floats(1e-3 * velocities[0])}},
-            "body": everything,
-            "line": lines,
+            "body": bodies,
+            "line": [line],
         },
         name,
     )
@@ -201,27 +193,14 @@ def start_quaternion(start: Start, inclination_deg: float) -> np.ndarray:
     return quaternion_from_dcm(direction_cosines(start.theta, start.psi, start.phi) @ orbit_axes(inclination_deg))
 
 
-def _string(pair: Pair, places, velocities, lever, inclination_deg: float, eccentricity: float):
-    """Records, places (n, 3) [m] and velocities (n, 3) [m/s] of the beads, even on the line from below and turning with it."""
-    names = bead_names(pair)
-    part = (np.arange(len(names)) + 1.0)[:, None] / (len(names) + 1)
-    below = places[1] + lever
-    there = below + part * (places[0] - below)
-    axes = orbit_axes(inclination_deg)
-    moving = pair.dumbbell.orbital_rate_rad_s * np.cross(axes[2], there) + outward_rate(pair, eccentricity) * axes[0]
-    mass = 0.0 if pair.beads is None else pair.beads.mass_kg
-    return [{"name": name, "kind": "point", "mass_kg": mass} for name in names], there, moving
-
-
-def _put_beside(bodies: list[dict], places, velocities) -> None:
-    """Places and velocities of all bodies but the first, from it, in its orbital axes."""
+def _beside(places, velocities) -> dict:
+    """Place and velocity of the second body from the first, in its orbital axes."""
     from fieldline.simulate.scenario.states import orbital_axes
 
     dcm_io, turn = orbital_axes(places[0], velocities[0])
-    offsets = (places - places[0]) @ dcm_io
-    rates = (velocities - velocities[0]) @ dcm_io - np.cross(turn, offsets)
-    for body, offset, rate in zip(bodies[1:], offsets[1:], rates[1:], strict=True):
-        body |= {"offset_o_m": floats(offset), "offset_rate_o_m_s": floats(rate)}
+    offset = (places[1] - places[0]) @ dcm_io
+    rate = (velocities[1] - velocities[0]) @ dcm_io - np.cross(turn, offset)
+    return {"offset_o_m": floats(offset), "offset_rate_o_m_s": floats(rate)}
 
 
 def _loads(mass_kg: float, oblate: bool, anomaly: dict | None, air: dict | None) -> list[dict]:

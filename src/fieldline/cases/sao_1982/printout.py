@@ -2,8 +2,8 @@
 
 Along, across, radial: the attachment from the Shuttle, in a, b, c of the Shuttle at that time (`euler_angles`): b along the
 track, c against the plane, a up; the annex's RADIAL, of a subsatellite below, is negative. Tension (TEN) is the elastic part
-k (l - l0), friction (FRICT) is b dl/dt; both are zero where the line is slack. On a line with beads they are those of the
-stretch next to the subsatellite.
+k (l - l0), friction (FRICT) is b dl/dt; both are zero where the line is slack. On a line with nodes they are those of the
+segment next to the subsatellite, and the length is that of all segments.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.sao_1982.euler_angles import cosines_of, euler_angles, xyz_angles
-from fieldline.cases.sao_1982.flight import SOURCE
+from fieldline.cases.sao_1982.flight import LINE, SOURCE
 
 if TYPE_CHECKING:
     import xarray
@@ -35,20 +35,21 @@ def printed(flown: xarray.Dataset, scenario, case: str, title: str, settings: di
     momentum_b = omega_b @ np.array(body.inertia_kg_m2)
     arm_b = np.array(line.from_point_b_m)
     lever = _to_inertial(cosines, arm_b)
-    far = scenario.index_of(line.to_body)
-    chord = place[:, far] - place[:, 1] - lever
+    points, speeds = (flown[f"line_{name}_i_{LINE}"].values for name in ("position", "velocity"))
     swing = _to_inertial(cosines, np.cross(omega_b, arm_b))
-    chord_rate = velocity[:, far] - velocity[:, 1] - swing
-    length = np.linalg.norm(chord, axis=1)
-    rate = (chord * chord_rate).sum(axis=1) / length
-    taut = length > line.rest_length_m
-    tension = np.where(taut, line.stiffness_n * (length - line.rest_length_m) / line.rest_length_m, 0.0)
-    friction = np.where(taut, line.damping_n_s * rate / line.rest_length_m, 0.0)
+    chord = points[:, 1] - place[:, 1] - lever
+    first, first_rate = _length_and_rate(chord, speeds[:, 1] - velocity[:, 1] - swing)
+    others, other_rates = _length_and_rate(np.diff(points[:, 1:], axis=1), np.diff(speeds[:, 1:], axis=1))
+    length, rate = first + others.sum(axis=1), first_rate + other_rates.sum(axis=1)
+    rest = line.rest_length_m / (line.nodes + 1)
+    taut = first > rest
+    tension = np.where(taut, line.stiffness_n * (first - rest) / rest, 0.0)
+    friction = np.where(taut, line.damping_n_s * first_rate / rest, 0.0)
     axes = shuttle_axes(place[:, 0], velocity[:, 0])
     turned = cosines @ np.swapaxes(axes, -1, -2)
     displacement = np.einsum("tij,tj->ti", axes, place[:, 1] + lever - place[:, 0])
     arm = lever / np.linalg.norm(lever, axis=1, keepdims=True)
-    pull = chord / length[:, None]
+    pull = chord / first[:, None]
     away = np.arctan2(np.linalg.norm(np.cross(arm, pull), axis=1), (arm * pull).sum(axis=1))
     vector = ("seconds", "axis")
     data = xr.Dataset(
@@ -88,13 +89,19 @@ def printed(flown: xarray.Dataset, scenario, case: str, title: str, settings: di
         "case": case,
         "source": SOURCE,
         "settings_json": settings_text(settings),
-        "natural_length_m": sum(one.rest_length_m for one in scenario.line),
-        "damping_n_s_m": line.damping_n_s / sum(one.rest_length_m for one in scenario.line),
+        "natural_length_m": line.rest_length_m,
+        "damping_n_s_m": line.damping_n_s / line.rest_length_m,
         "scenario_toml": scenario.to_toml(),
         "outcome": flown.attrs["outcome"],
         "provenance_json": flown.attrs["provenance_json"],
     }
     return data
+
+
+def _length_and_rate(chord, chord_rate):
+    """Lengths of chords (..., 3), and their rates."""
+    length = np.linalg.norm(chord, axis=-1)
+    return length, (chord * chord_rate).sum(axis=-1) / length
 
 
 def shuttle_axes(place, velocity) -> np.ndarray:

@@ -14,7 +14,7 @@ import numpy as np
 
 from fieldline.analysis.spinning_subsatellite import SpinningSubsatellite, spin_for_angle
 from fieldline.cases.erbs_like import number
-from fieldline.cases.sao_1982.dumbbell import beads_on, critical_angular_damping
+from fieldline.cases.sao_1982.dumbbell import critical_angular_damping, strung
 from fieldline.cases.sao_1982.flight import Pair, Start, pair_at, scenario_of, turning_start
 from fieldline.cases.sao_1982.printout import printed
 from fieldline.cases.sao_1982.surroundings import GM_M3_S2
@@ -64,7 +64,7 @@ def spin(
         hanging branch's rate about the axis, and serves the inverted one because C = 2 A.
     placement : where masses and attachment start, see `flight`. damping : b [N s/m] or "critical".
     oblate, anomaly, air : J2, a mass anomaly, drag; see `surroundings`.
-    nodes, line_mass_kg : beads that carry the line's mass (s. 3.2); damp such a line little, its steps get short otherwise.
+    nodes, line_mass_kg : of a line with mass (s. 3.2); damp it little, its steps get short otherwise.
 
     Returns
     -------
@@ -76,8 +76,8 @@ def spin(
     if branch not in BRANCHES:
         raise InputError(f'unknown branch "{branch}"; {nearest(str(branch), BRANCHES)}')
     theta = np.radians(number("theta_deg", theta_deg, 1e-3, 180.0 - 1e-3))
-    beads = beads_on(pair_at(altitude_m, lower_mass_kg, upper_mass_kg, length_m), nodes, line_mass_kg, GM_M3_S2)
-    two = beads.dumbbell
+    whole = strung(pair_at(altitude_m, lower_mass_kg, upper_mass_kg, length_m), nodes, line_mass_kg, GM_M3_S2)
+    two = whole.dumbbell
     body = SpinningSubsatellite(
         axial_inertia_kg_m2=axial_inertia_kg_m2,
         transverse_inertia_kg_m2=transverse_inertia_kg_m2,
@@ -89,7 +89,7 @@ def spin(
     stationary = spin_for_angle(body, theta if branch == "hanging" else -theta)
     about = stationary if spin_rad_s is None else number("spin_rad_s", spin_rad_s, -100.0, 100.0)
     inertia = (transverse_inertia_kg_m2, transverse_inertia_kg_m2, axial_inertia_kg_m2)
-    pair = Pair(two, inertia, (0.0, 0.0, BRANCHES[branch] * offset_m), stiffness_n, damping, beads=beads)
+    pair = Pair(two, inertia, (0.0, 0.0, BRANCHES[branch] * offset_m), stiffness_n, damping, strung=whole)
     start = turning_start(theta, 0.5 * np.pi, 0.0, 0.0, two.orbital_rate_rad_s, about, placement)
     scenario = scenario_of(
         "sao_1982_spin",
@@ -127,10 +127,10 @@ def thruster(
     what reproduces the printed table. Masses, length and height are the report's; nodes and the Dataset as in `spin`.
     """
     settings = dict(locals())
-    beads = beads_on(pair_at(ALTITUDE_M, SUBSATELLITE_KG, SHUTTLE_KG, LENGTH_M), nodes, line_mass_kg, GM_M3_S2)
-    two = beads.dumbbell
+    whole = strung(pair_at(ALTITUDE_M, SUBSATELLITE_KG, SHUTTLE_KG, LENGTH_M), nodes, line_mass_kg, GM_M3_S2)
+    two = whole.dumbbell
     inertia = (transverse_inertia_kg_m2, transverse_inertia_kg_m2, axial_inertia_kg_m2)
-    pair = Pair(two, inertia, (0.0, 0.0, number("offset_m", offset_m, 1e-6)), stiffness_n, damping, beads=beads)
+    pair = Pair(two, inertia, (0.0, 0.0, number("offset_m", offset_m, 1e-6)), stiffness_n, damping, strung=whole)
     right = 0.5 * np.pi
     scenario = scenario_of(
         "sao_1982_thruster",
@@ -220,5 +220,6 @@ def _flown(scenario, pair: Pair, case: str, title: str, settings: dict, **extra)
     from fieldline.simulate.run import simulate
 
     data = printed(simulate(scenario), scenario, case, title, settings)
-    data.attrs |= {"orbital_rate_rad_s": pair.dumbbell.orbital_rate_rad_s, "tension_n": pair.dumbbell.tension_n} | extra
+    tension = pair.dumbbell.tension_n if pair.strung is None else float(pair.strung.tension_n[0])
+    data.attrs |= {"orbital_rate_rad_s": pair.dumbbell.orbital_rate_rad_s, "tension_n": tension} | extra
     return data

@@ -58,10 +58,17 @@ def line_ends_on(scenario, name: str):
     for line in scenario.line:
         for end in ("from", "to"):
             if getattr(line, f"{end}_body") == name:
-                reel = line.reel.mode if end == "to" and line.reel is not None else ""
                 axes = tuple(one.axis_b for one in line.slider if one.end == end)
-                found.append(LineEnd(getattr(line, f"{end}_point_b_m"), reel, axes))
+                reel = _reel_at(line) if end == "to" and line.reel is not None else {}
+                found.append(LineEnd(getattr(line, f"{end}_point_b_m"), slider_axes_b=axes, **reel))
     return tuple(found)
+
+
+def _reel_at(line) -> dict:
+    """What a law may know of a line's reel."""
+    reel = line.reel
+    lag = reel.lag_s if reel.mode == "rate" else 0.0
+    return {"reel": reel.mode, "shortest_m": reel.shortest_length_m, "longest_m": reel.total_length_m, "lag_s": lag}
 
 
 def field_along(scenario, b: int, position, velocity, period_s: float):
