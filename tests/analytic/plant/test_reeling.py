@@ -206,7 +206,7 @@ EXPONENTIAL = {"body": "ship", "law": "reel-exponential", "rate_hz": 0.5}
 def test_exponential_deployment_leans_at_its_constant_angle(nodes):
     """sin 2 th = 4 c / (3 n), on a line without nodes and on one of hardly any mass whose nodes appear."""
     c = 0.5 * pf.MEAN_MOTION
-    law = EXPONENTIAL | {"parameters": {"target_length_m": 1e6, "rate_out_per_s": c}}
+    law = EXPONENTIAL | {"parameters": {"target_length_m": 6000.0, "approach_per_s": 1.0, "rate_out_per_s": c}}
     mass = 1e-6 if nodes else 0.0
     flight = hung(600.0, 600.0 * c, {}, nodes, mass, 4000.0, output=20.0, software=[law], integrator=IMPLICIT)
     flight.fly()

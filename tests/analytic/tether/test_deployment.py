@@ -35,7 +35,7 @@ def test_a_line_paid_out_exponentially_leans_at_a_constant_angle(lean_deg, upwar
             output=30.0,
             integrator={"method": "rosenbrock", "step_s": 0.5},
             line=[line],
-            software=[law | {"parameters": {"target_length_m": 1e6, "rate_out_per_s": c}}],
+            software=[law | {"parameters": {"target_length_m": 2500.0, "approach_per_s": 1.0, "rate_out_per_s": c}}],
         )
     )
     shape = fl.line_shape(run)
