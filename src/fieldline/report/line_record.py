@@ -109,6 +109,14 @@ class LineRecord:
         cosine = np.sum(lever * away, axis=1) / np.maximum(size * np.linalg.norm(away, axis=1), 1e-12)
         return DEG * np.arccos(np.clip(cosine, -1.0, 1.0))
 
+    def pull_i(self, end: int) -> np.ndarray:
+        """(n, 3) [N] with which it pulls at the body of an end."""
+        points, rows = self.run.values(POSITION + self.name), np.arange(len(self.tension))
+        away = self.neighbour(points, end) - points[:, -1 if end else 0]
+        out = np.isfinite(self.tension).sum(axis=1) - 1
+        size = self.tension[rows, out if end else 0 * out]
+        return away * (size / np.maximum(np.linalg.norm(away, axis=1), 1e-12))[:, None]
+
     @staticmethod
     def neighbour(points: np.ndarray, end: int) -> np.ndarray:
         """(n, 3) the point next to an end: of those that are out, the second or the last but one."""

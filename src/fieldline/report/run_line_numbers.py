@@ -15,6 +15,7 @@ ZERO_CELSIUS_K = 273.15
 CIRCLES = 0.5  # |sense| from which on a skiprope is said to go round
 LAST = 0.1  # share of the run's end over which a skiprope is told
 HANDS = {1: "right-handed", -1: "left-handed", 0: "in one plane"}
+ROUNDING_M = 1e-7  # of places of millions of metres
 
 
 def line_numbers(line: LineRecord) -> dict[str, Any]:
@@ -35,8 +36,8 @@ def line_numbers(line: LineRecord) -> dict[str, Any]:
         "lowest_altitude_km": float(np.nanmin(line.height)) / 1e3,
     }
     if shape.bows:
-        numbers["deflection_largest_m"] = float(shape.largest_m.max())
-        numbers["deflection_end_m"] = float(shape.largest_m[-1])
+        numbers["deflection_largest_m"] = _deflection(float(shape.largest_m.max()))
+        numbers["deflection_end_m"] = _deflection(float(shape.largest_m[-1]))
     return numbers | _skiprope(line) | _heat_and_current(line) | _levers(line)
 
 
@@ -139,6 +140,11 @@ def line_summary(name: str, numbers: dict[str, Any]) -> str:
     if "power_mean_w" in numbers:
         parts.append(f"power {numbers['power_mean_w']:.3g} W mean, {numbers['power_largest_w']:.3g} W at most")
     return f"{name}: " + " · ".join(parts)
+
+
+def _deflection(metres: float) -> float:
+    """Nothing where it is the rounding of places that are thousands of kilometres out."""
+    return metres if metres > ROUNDING_M else 0.0
 
 
 def line_warnings(name: str, numbers: dict[str, Any]) -> list[str]:

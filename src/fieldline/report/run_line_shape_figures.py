@@ -17,6 +17,7 @@ SNAPSHOTS = 13
 BEGIN, MIDDLE, END = AXIS_COLOURS[0], FOURTH, WARM  # colours of time, told apart on white and on black
 PATH_DOTS = 6000
 FAR_M = 5e3
+SHORT_M = 0.1  # of a stretch, drawn in millimetres below it
 
 
 def shape_pictures(line: LineRecord) -> list[Picture]:
@@ -110,9 +111,10 @@ def _length(line: LineRecord, axes: Any) -> None:
         finish(axes, line.run, "length", unit)
         return
     longer = chord - line.length
-    stroke(axes, line.run, longer, 0)
-    fit(axes, longer, least=1e-3)
-    finish(axes, line.run, f"distance of its ends, less its unstretched {line.length[0]:,.6g} m", "m", keyed=False)
+    unit, factor = ("mm", 1e3) if np.abs(longer).max() < SHORT_M else ("m", 1.0)
+    stroke(axes, line.run, factor * longer, 0)
+    fit(axes, factor * longer, least=1e-3)
+    finish(axes, line.run, f"distance of its ends, less its unstretched {line.length[0]:,.6g} m", unit, keyed=False)
 
 
 def skiprope_picture(line: LineRecord) -> Picture | None:

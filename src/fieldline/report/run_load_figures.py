@@ -12,6 +12,10 @@ from fieldline.report.theme import Picture, label_outer, panels
 
 MOST_PANELS = 6
 SMALL_A_M2 = 0.05  # limits below this are told in thousandths
+HALF_SEGMENTS = (
+    "<p>Lines count with what of their mass moves with a body: the weight of the half segments at its attachments, and on a "
+    "reel's body, which holds the whole line in its mass, less that of what is out. What a line pulls with is its tension.</p>"
+)
 
 
 def torque_picture(record: RunRecord, b: int) -> Picture | None:
@@ -70,7 +74,8 @@ def load_table(record: RunRecord) -> str:
             if cells != ["–"] * 4:
                 rows.append([text(body), text(name.replace("_", " ")), *cells])
     heads = ("body", "load", "force, RMS [N]", "greatest", "torque, RMS [N m]", "greatest")
-    return table(heads, rows, "numbers") if rows else ""
+    heavy = "lines" in names and any(line.mass_per_length_kg_m > 0.0 for line in record.scenario.line)
+    return (table(heads, rows, "numbers") + (HALF_SEGMENTS if heavy else "")) if rows else ""
 
 
 def actuator_pictures(record: RunRecord, b: int) -> list[Picture]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from fieldline.report.decimation import cloud
 from fieldline.report.geometry import orbital_axes_i
+from fieldline.report.line_record import lines_of
 from fieldline.report.run_record import MOST_BODIES, RunRecord
 from fieldline.report.run_strokes import COLOURS, finish, fit, stroke
 from fieldline.report.theme import INK, Picture, label_outer, panels
@@ -50,13 +51,16 @@ def separation_picture(record: RunRecord) -> Picture | None:
 
 
 def line_pulls(record: RunRecord) -> dict[int, np.ndarray]:
-    """(n,) [N] force of all lines on each body that they pull at; of a single line's two bodies the first alone."""
-    loads = [str(name) for name in record.dataset["load"].values]
-    if "lines" not in loads:
-        return {}
-    force = np.linalg.norm(record.dataset["force_i"].sel(load="lines").values, axis=-1)
-    pulled = [b for b in range(force.shape[1]) if force[:, b].any()][:MOST_BODIES]
-    return {b: force[:, b] for b in (pulled[:1] if len(record.scenario.line) == 1 else pulled)}
+    """(n,) [N] pull of all lines together on each body that they are tied to; of one line's bodies the first alone.
+
+    The tension is taken, not the load "lines" of the run: that has the weight of the half segments at the ends in it.
+    """
+    pulls: dict[int, np.ndarray] = {}
+    for line in lines_of(record):
+        for end, b in enumerate(line.ends):
+            pulls[b] = pulls.get(b, 0.0) + line.pull_i(end)
+    pulled = sorted(pulls)[:MOST_BODIES]
+    return {b: np.linalg.norm(pulls[b], axis=1) for b in (pulled[:1] if len(record.scenario.line) == 1 else pulled)}
 
 
 def relative_picture(record: RunRecord) -> Picture | None:

@@ -146,3 +146,25 @@ def test_what_cannot_hang_is_refused(changes, words):
     with pytest.raises(InputError) as refused:
         scenario(**changes).check()
     assert words in str(refused.value)
+
+
+@pytest.mark.parametrize("upward", [False, True], ids=["a chain", "above and below"])
+def test_four_bodies_on_three_lines(upward):
+    """Each below the one before, or one above the body from which the others hang: at rest, and it stays so."""
+    third = {"name": "third", "kind": "point", "mass_kg": 100.0, "hang": {}}
+    fourth = {"name": "fourth", "kind": "point", "mass_kg": 50.0, "hang": {"upward": upward}}
+    second = LONG | {"name": "second", "from_body": "third", "to_body": "below", "rest_length_m": 5e3, "nodes": 3}
+    last = LONG | {
+        "name": "last",
+        "from_body": "fourth",
+        "to_body": "above" if upward else "third",
+        "rest_length_m": 3e3,
+        "nodes": 2,
+    }
+    lines = [second | {"to_point_b_m": [0.0, 0.0, 1.0]}, last | ({"to_point_b_m": [0.0, 0.0, -2.0]} if upward else {})]
+    data = fl.simulate(scenario(bodies=[third, fourth], lines=lines))
+    for name in ("tether", "second", "last"):
+        tension = data[f"tension_{name}"].values
+        assert tension.min() > 0.2 and np.ptp(tension, axis=0).max() < 0.05
+    up = data.position_i.values[0] @ data.position_i.values[0, 0] / np.linalg.norm(data.position_i.values[0, 0])
+    assert (up[3] > up[0] + 2.9e3) if upward else (up[3] < up[2] - 2.9e3)

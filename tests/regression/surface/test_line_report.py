@@ -14,6 +14,7 @@ from fieldline.report.line_record import LineRecord
 from fieldline.report.run_line_figures import line_pictures
 from fieldline.report.run_numbers import run_numbers
 from fieldline.report.run_record import RunRecord
+from fieldline.report.run_relative_figures import line_pulls
 from fieldline.report.simulation_report import simulation_html
 from fieldline.report.theme import themed
 from line_dataset import ACROSS_RAD, BOW_M, IN_PLANE_RAD, LENGTH_M, SKIPROPE_M, TILT_RAD, line_dataset
@@ -154,3 +155,21 @@ def test_the_page_is_whole_and_needs_nothing_else(html):
 def test_a_run_of_older_making_has_no_chapter(run):
     older = run.drop_vars([name for name in run if str(name).endswith("_tether")])
     assert run_numbers(older)["lines"] == {} and '<section id="lines">' not in simulation_html(older)
+
+
+@pytest.mark.parametrize("reel", [False, True])
+def test_lines_pull_at_bodies_with_their_tension(reel):
+    """The drawn pull of one line is the tension beside the first body, whatever the half segments weigh."""
+    data = line_dataset(reel=reel)
+    line = LineRecord(RunRecord(data), "tether")
+    pulled = line_pulls(line.run)
+    b = min(line.ends)
+    tension = line.tension[:, 0] if line.ends[0] == b else line.tension[:, -1]
+    if not reel:
+        assert pulled.keys() == {b} and pulled[b] == pytest.approx(tension, rel=1e-9, abs=1e-12)
+    for end in (0, 1):
+        last = np.isfinite(line.tension).sum(axis=1) - 1
+        beside = line.tension[np.arange(len(last)), last if end else 0 * last]
+        away = line.run.values("position_i")[:, line.ends[1 - end]] - line.run.values("position_i")[:, line.ends[end]]
+        assert np.linalg.norm(line.pull_i(end), axis=1) == pytest.approx(beside, rel=1e-9, abs=1e-12)
+        assert np.all((line.pull_i(end) * away).sum(axis=1) >= 0.0)
