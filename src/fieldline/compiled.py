@@ -13,7 +13,7 @@ such a kernel crashes the process: a test that wants one wraps it.
 evaluation of the right-hand side goes through (0.58 against 0.54 of plain C's pace). Not for large ones: with the whole
 loop merged into one function the compiler takes three times as long.
 
-Records go to compiled code as `fieldline.packed.Packed`: one pointer.
+Records go to compiled code through `fieldline.packed.pack`, as one pointer.
 
 Kernels let go of the interpreter, so that runs in threads go side by side. Division by zero gives infinity or NaN, for
 the caller to find.

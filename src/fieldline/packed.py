@@ -1,7 +1,7 @@
 """Records of many arrays, given to compiled code as one pointer.
 
 Numba passes a NamedTuple by value, array by array, seven numbers each or more: a plant of three hundred arrays is two
-thousand arguments of every function that takes it, and the compiler works on them in each. `Packed(record)` writes where
+thousand arguments of every function that takes it, and the compiler works on them in each. `pack(record)` writes where
 the arrays lie, and what numbers the record holds, into one row of words,
 
     array of n axes: address, n lengths      number: itself      tuple of numbers: one after the other
@@ -12,20 +12,20 @@ in the record is the address of its part of the row, and costs nothing. The word
 compiler is told so (`invariant.load`): it may keep what it has loaded across stores into arrays. Arrays belong to the
 Python object; compiled code neither counts references to them nor frees them.
 
-In plain Python, and with JIT off, a Packed is the record: it has its attributes.
+In plain Python a Packed has the attributes of its record; with JIT off `pack` gives the record itself.
 Arrays must be C-contiguous; a number keeps its type (float, int, bool), those in a tuple are floats.
 """
 
 from __future__ import annotations
 
+import struct
 from functools import cache
 from hashlib import sha256
-from struct import pack
 from typing import NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import types
+from numba import config, types
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import NativeValue, infer_getattr, lower_getattr_generic, models, register_model, unbox
@@ -98,6 +98,11 @@ class Packed:
         return getattr(self._record, name)
 
 
+def pack(record):
+    """What kernels take for a record: a Packed; with JIT off the record itself, whose attributes are nearer."""
+    return record if config.DISABLE_JIT else Packed(record)
+
+
 def _write(record, words: bytearray, where: str) -> PackedType:
     """Append a record's words; its type."""
     kinds = []
@@ -106,18 +111,18 @@ def _write(record, words: bytearray, where: str) -> PackedType:
             if not (value.flags.c_contiguous and value.flags.aligned):
                 raise TypeError(f"{where}.{name} must be a C-contiguous array; its strides are {value.strides}")
             kinds.append(array_type(value.dtype, value.ndim, value.flags.writeable))
-            words += pack(f"{1 + value.ndim}q", value.__array_interface__["data"][0], *value.shape)
+            words += struct.pack(f"{1 + value.ndim}q", value.__array_interface__["data"][0], *value.shape)
         elif hasattr(value, "_fields"):
             kinds.append(_write(value, words, f"{where}.{name}"))
         elif isinstance(value, tuple):
             kinds.append(types.UniTuple(types.float64, len(value)))
-            words += pack(f"{len(value)}d", *value)
+            words += struct.pack(f"{len(value)}d", *value)
         elif isinstance(value, float | np.floating):
             kinds.append(types.float64)
-            words += pack("d", value)
+            words += struct.pack("d", value)
         else:
             kinds.append(types.boolean if isinstance(value, bool | np.bool_) else types.int64)
-            words += pack("q", int(value))
+            words += struct.pack("q", int(value))
     return packed_type(type(record), tuple(kinds))
 
 

@@ -22,7 +22,7 @@ from fieldline.dynamics.parameters import STATE, TANGENT, Ambient, Plant, state_
 from fieldline.dynamics.rates import freeze_fields, plant_rates
 from fieldline.frames.attitude import quat_exp, quat_mul, quat_unit
 from fieldline.integrate.steps import combine
-from fieldline.packed import Packed
+from fieldline.packed import pack
 
 
 class Work(NamedTuple):
@@ -167,5 +167,5 @@ def rates_of(t: float, y, plant: Plant, inputs, loads, call, shared: Shared) -> 
         raise ValueError(f"the plant's state has {state_size(plant)} numbers; got {len(y)}")
     work = new_work(plant, 1, loads=len(LOADS))
     out = np.zeros_like(work.z)
-    evaluate(float(t), np.array(y, dtype=float), Packed(plant), Packed(inputs), loads, call, Packed(shared), Packed(work), out)
+    evaluate(float(t), np.array(y, dtype=float), pack(plant), pack(inputs), loads, call, pack(shared), pack(work), out)
     return out, work.log

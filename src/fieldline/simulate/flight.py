@@ -21,7 +21,7 @@ from fieldline.dynamics.rates import EVENT_AT_WORK, LAW_AT_WORK, LOAD_AT_WORK
 from fieldline.dynamics.step import new_shared, new_work
 from fieldline.errors import InputError, shown
 from fieldline.integrate.tableau import DOP853, RK4
-from fieldline.packed import Packed
+from fieldline.packed import pack
 from fieldline.simulate.assembly import boards as made
 from fieldline.simulate.assembly.actuators import actuators_of, inputs_of
 from fieldline.simulate.assembly.design import Design
@@ -87,7 +87,7 @@ class Flight:
             self.y, np.empty_like(self.y), self.plant, self.inputs, self.schedule, self.stepping, self.sensors, self.boards,
             self.tasks, self.actuators, self.events, self.record, self.clock, self.shared, self.work,
         )  # fmt: skip
-        self.packed = Packed(self.run)
+        self.packed = pack(self.run)
         self.outcome = Outcome.PAUSED
         self.interrupted = False
 

@@ -14,7 +14,7 @@ from fieldline.dynamics.lines.turning_axes import enter_all, fall, leave_all, mo
 from fieldline.dynamics.parameters import NO_REEL, STATE, TANGENT
 from fieldline.dynamics.step import rates_of
 from fieldline.integrate.linear import factorise, substitute
-from fieldline.packed import Packed
+from fieldline.packed import pack
 
 pytestmark = pytest.mark.kernels
 
@@ -181,7 +181,7 @@ def test_the_system_is_the_jacobian_of_the_plant(case):
         right[gone : nodes - bodies + 6 * plant.lines.first[k + 1]] = 0.0
         if plant.lines.reel[k] == NO_REEL:
             right[feeds - bodies + 2 * k : feeds - bodies + 2 * k + 2] = 0.0
-    records = [Packed(one) for one in (plant, flight.inputs, flight.shared, implicit)]
+    records = [pack(one) for one in (plant, flight.inputs, flight.shared, implicit)]
     solved_stage(0.0, s, z, start, *records, right, out)
     origin, omega = implicit.axes.origin[0, :6], implicit.axes.origin[0, 6:]
     assert np.linalg.norm(omega - spin) < 1e-6 + 0.1 * np.linalg.norm(spin)
@@ -211,7 +211,7 @@ def test_axes_that_turn_leave_nothing_out():
     z = np.concatenate([*(np.r_[y[STATE * b : STATE * b + 6], np.zeros(6)] for b in range(bodies)), y[STATE * bodies :]])
     z += 1e-3 * rng.normal(size=z.size)
     axes = new_implicit(plant, True).axes
-    records = [Packed(one) for one in (plant, flight.inputs, axes)]
+    records = [pack(one) for one in (plant, flight.inputs, axes)]
     inside, back, turned = np.zeros_like(z), np.zeros_like(z), np.zeros_like(z)
     there_and_back(0.0, 0.0, z, start, *records, inside, back, np.zeros_like(z), turned)
     np.testing.assert_allclose(back, z, rtol=1e-14, atol=1e-9)
