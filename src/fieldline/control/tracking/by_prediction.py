@@ -18,7 +18,8 @@ from numba import njit
 
 from fieldline.control.tracking import onboard_vehicle as own
 from fieldline.control.tracking.allocation import allocate_kernel
-from fieldline.control.tracking.horizon import Horizon, best_controls, new_sweep
+from fieldline.control.tracking.horizon import best_controls
+from fieldline.control.tracking.riccati_sweep import Horizon, new_sweep
 from fieldline.control.tracking.tracking_loop import DISTURBANCE, MEMORY, in_body, prepared, reference_at, silent, told
 
 STAGES, STEP, MOST_STEPS, FIELDS, FIELD_STEP = range(5)
