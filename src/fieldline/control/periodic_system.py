@@ -115,15 +115,28 @@ def continuous_steps(a, g, q, period_s: float) -> tuple[Steps, float]:
 
 def held_problem(a, b, q, r, period_s: float) -> Held:
     """The discrete problem of an input held over each step, exact for constant coefficients (Van Loan's integrals)."""
+    step = period_s / b.shape[0]
+    return _held(magnus(_cost_and_motion(a, b, q, r), step), *b.shape[1:])
+
+
+def held_instants(a, b, q, r, step_s: float) -> Held:
+    """The same for coefficients that stay as they are at each node, whatever the others are."""
+    return _held(step_s * _cost_and_motion(a, b, q, r), *b.shape[1:])
+
+
+def _cost_and_motion(a, b, q, r) -> np.ndarray:
+    """(N, 2 (n + m), 2 (n + m)) Van Loan's matrices of state and input."""
     count, n, m = b.shape
-    step = period_s / count
     f = np.zeros((count, n + m, n + m))
     f[:, :n, :n], f[:, :n, n:] = a, b
     weight = np.zeros_like(f)
     weight[:, :n, :n], weight[:, n:, n:] = q, r
-    both = np.concatenate([np.concatenate([-_mt(f), weight], axis=2), np.concatenate([0.0 * f, f], axis=2)], axis=1)
-    phi = exponentials(magnus(both, step))
-    k = n + m
+    return np.concatenate([np.concatenate([-_mt(f), weight], axis=2), np.concatenate([0.0 * f, f], axis=2)], axis=1)
+
+
+def _held(exponents: np.ndarray, n: int, m: int) -> Held:
+    """The discrete problem from the exponents of Van Loan's matrices over each step."""
+    phi, k = exponentials(exponents), n + m
     forward = phi[:, k:, k:]
     cost = _mt(forward) @ phi[:, :k, k:]
     cost = 0.5 * (cost + _mt(cost))
@@ -206,6 +219,26 @@ def periodic_solution(steps: Steps, tolerance: float = 1e-12) -> tuple[np.ndarra
     return P, closed, residual, doublings
 
 
+def instants_solution(steps: Steps, tolerance: float = 1e-12) -> tuple[np.ndarray, np.ndarray]:
+    """P (N, n, n) of each step as if its coefficients stayed for ever, and how far the last doubling moved it (N,), relative.
+
+    All instants are doubled at once; not finite, or not settled, where no regulator of that instant exists.
+    """
+    moved = np.full(steps.A.shape[0], np.inf)
+    for _ in range(MOST_DOUBLINGS):
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                double = _join(steps, steps)
+                size = np.maximum(np.abs(double.H).max(axis=(1, 2)), 1e-300)
+                moved = np.abs(double.H - steps.H).max(axis=(1, 2)) / size
+        except np.linalg.LinAlgError:
+            return steps.H, np.full(steps.A.shape[0], np.inf)
+        steps = double
+        if not np.isfinite(moved).all() or moved.max() <= tolerance:
+            break
+    return steps.H, moved
+
+
 def disturbance_costate(P: np.ndarray, closed: np.ndarray, push: np.ndarray) -> np.ndarray:
     """(N, n, k) costates s of disturbances that are known: p = P x + s.
 
@@ -235,7 +268,11 @@ def product(steps):
 
 def held_gains(held: Held, P: np.ndarray) -> np.ndarray:
     """(N, m, n) gains K of u_k = -K_k x_k for a held input, from P at the nodes in the cost's own scale."""
-    after = np.roll(P, -1, axis=0)
+    return gains_before(held, np.roll(P, -1, axis=0))
+
+
+def gains_before(held: Held, after: np.ndarray) -> np.ndarray:
+    """(N, m, n) gains of a held input from P (N, n, n) at each step's end."""
     back = _mt(held.gamma) @ after
     return np.linalg.solve(held.r + back @ held.gamma, back @ held.phi + _mt(held.s))
 

@@ -6,7 +6,8 @@ as large as they become. Controllers:
     frozen      u = M r - K x of the field at 33 degrees, as in appendix E
     turning     the same K, but the controls that hold the place from the field as it turns
     allocated   loads of one constant regulator, allocated within limits at each call
-    periodic    gains over the day, allocated within limits
+    scheduled   over the day the gain of each instant, allocated within limits
+    periodic    gains over the day that know how the field turns, allocated within limits
     predictive  the best plan over the next 45 minutes, within limits
 """
 
@@ -37,7 +38,7 @@ from fieldline.errors import InputError, nearest, shown
 if TYPE_CHECKING:
     from fieldline.simulate.scenario.scenario import Scenario
 
-CONTROLLERS = ("frozen", "turning", "allocated", "periodic", "predictive")
+CONTROLLERS = ("frozen", "turning", "allocated", "scheduled", "periodic", "predictive")
 FIELDS = ("thesis", "dipole", "IGRF-14")
 A_M2_PER_TESLA_M3 = 1e7  # 4 pi / mu0
 START_UTC = "2025-03-01T00:00:00"

@@ -1,11 +1,13 @@
-"""Two laws that want loads and let the allocation find the controls.
+"""Laws that want loads and let the allocation find the controls.
 
     tracking-allocated   loads = (1) of `tracking_loop` - K e,   K one gain (6, 12) of a regulator whose inputs are loads
     tracking-periodic    loads = (1) - E(B) K(t) e,   K(t) (m, 12) of the periodic regulator of the controls themselves
+    tracking-scheduled   the same with K(t) of the regulator of each instant, as if the field then stood still
 
 The first needs controls that give any load at any time (a thruster across the orbit beside the conductors), and then its
 loop is that of constant coefficients whatever the field does. The second knows what the controls can do at each time of the
-day and what they will be able to do: it serves vehicles that cannot push everywhere always.
+day and what they will be able to do: it serves vehicles that cannot push everywhere always. The third schedules gains
+over the sidereal day, linear between 120 nodes an orbit: it needs every motion to be within reach at every instant.
 """
 
 from __future__ import annotations
@@ -67,7 +69,7 @@ def gained(t, params, at, error, m, out):
 
 @njit(cache=True, error_model="numpy")
 def tracking_periodic(t, measurement, memory, params):
-    """Thrusts and currents of `tracking-periodic`."""
+    """Thrusts and currents of `tracking-periodic` and `tracking-scheduled`, which differ in their table alone."""
     m = int(params[own.CONTROLS])
     x, error, loads, effect = np.zeros(12), np.zeros(12), np.zeros(6), np.zeros((6, m))
     known, q_hb = prepared(t, measurement, memory, params, x, error, loads, effect)

@@ -9,7 +9,16 @@ import numpy as np
 from fieldline.control.controllable import THRESHOLD, controllability_now, words_of
 from fieldline.control.frozen_regulator import frozen_regulator
 from fieldline.control.law import Law, Parameter
-from fieldline.control.periodic_system import held_gains, held_problem, held_steps, periodic_solution, product
+from fieldline.control.periodic_system import (
+    gains_before,
+    held_gains,
+    held_instants,
+    held_problem,
+    held_steps,
+    instants_solution,
+    periodic_solution,
+    product,
+)
 from fieldline.control.tracking.by_instant import tracking_frozen
 from fieldline.control.tracking.by_loads import tracking_allocated, tracking_periodic
 from fieldline.control.tracking.by_prediction import MOST_CONTROLS, MOST_STAGES, PLAN_MEMORY, tracking_predictive
@@ -145,23 +154,69 @@ def _pack_allocated(table, context) -> np.ndarray:
 
 def _pack_periodic(table, context) -> np.ndarray:
     known = known_of("tracking-periodic", {**COMMON, **WEIGHTS}, table, context)
-    gains = periodic_gains(known)
+    return _with_gains(known, periodic_gains(known), context)
+
+
+def _pack_scheduled(table, context) -> np.ndarray:
+    known = known_of("tracking-scheduled", {**COMMON, **WEIGHTS}, table, context)
+    used = known.limits > 0.0
+    margins = controllability_now(known.motion, known.inputs[:, :, used], rate=known.mean_motion, scale=scale_of(known)).margin
+    worst = int(np.argmin(margins))
+    refuse_unreached(known, known.inputs[worst], worst)
+    return _with_gains(known, scheduled_gains(known), context)
+
+
+def _with_gains(known: Known, gains: np.ndarray, context) -> np.ndarray:
+    """The numbers of a law with a day's table of gains (N, m, 12)."""
     head = reached(known, load_gain(known, context.period_s)[0])
     return np.concatenate([head, [len(gains), known.step_s], gains.ravel()])
 
 
 def periodic_gains(known: Known) -> np.ndarray:
     """(N, m, 12) gains of the periodic regulator over the day, controls weighed by their limits; kept, since it takes long."""
+    return _over_the_day(known, lambda *given: _solved(*given)[0])
+
+
+def scheduled_gains(known: Known) -> np.ndarray:
+    """(N, m, 12) gains over the day, each of the regulator of its instant, for which the field stands still."""
+    return _over_the_day(known, _of_instants)
+
+
+def _over_the_day(known: Known, solved) -> np.ndarray:
+    """(N, m, 12) gains in SI from a solution of the scaled problem."""
     used = known.limits > 0.0
     scale, rate = scale_of(known), known.mean_motion
     F = known.motion * scale / scale[:, None] / rate
     G = known.inputs[:, :, used] * known.limits[used] / scale[:, None] / rate
     kept = moved(known)
     problem = _problem(F, G, state_weights(known) * scale * scale, kept)
-    solved, _ = _solved(*problem, known.values["effort"], rate * known.step_s)
+    found = solved(*problem, known.values["effort"], rate * known.step_s)
     gains = np.zeros((len(G), len(used), 12))
-    gains[np.ix_(range(len(G)), np.flatnonzero(used), kept)] = solved * known.limits[used][:, None] / scale[kept]
+    gains[np.ix_(range(len(G)), np.flatnonzero(used), kept)] = found * known.limits[used][:, None] / scale[kept]
     return gains
+
+
+def _ring(F: bytes, G: bytes, q: bytes, shape: tuple[int, int, int], effort: float):
+    """(a, b, q, r) of the scaled problem, (N, ...) each."""
+    count, n, m = shape
+    a, weights = np.frombuffer(F).reshape(n, n), np.diag(np.frombuffer(q))
+    a, weights, effort_m = (np.broadcast_to(one, (count, *one.shape)) for one in (a, weights, effort * np.eye(m)))
+    return a, np.frombuffer(G).reshape(shape), weights, effort_m
+
+
+@lru_cache(maxsize=8)
+def _of_instants(F: bytes, G: bytes, q: bytes, shape: tuple[int, int, int], effort: float, step: float) -> np.ndarray:
+    """Gains (N, m, n) of the scaled problem, each of its own instant."""
+    held = held_instants(*_ring(F, G, q, shape, effort), step)
+    steps, factor = held_steps(held)
+    riccati, left = instants_solution(steps)
+    if not (left < 1e-6).all():
+        share = float((~(left < 1e-6)).mean())
+        raise NoEstimateError(
+            f"during {share:.1%} of the day no regulator of the instant keeps this vehicle: what the field lets its controls "
+            'reach there is too little. "tracking-periodic" knows that it returns; a thruster is always there.'
+        )
+    return gains_before(held, riccati / factor)
 
 
 @lru_cache(maxsize=8)
@@ -169,13 +224,9 @@ def _solved(
     F: bytes, G: bytes, q: bytes, shape: tuple[int, int, int], effort: float, step: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Gains (N, m, n) and P (N, n, n) of the scaled problem with inputs held over each step."""
-    count, n, m = shape
-    b, weights = np.frombuffer(G).reshape(shape), np.diag(np.frombuffer(q))
-    a, effort_m = np.frombuffer(F).reshape(n, n), effort * np.eye(m)
-    ring = (np.broadcast_to(one, (count, *one.shape)) for one in (a, weights, effort_m))
-    a, weights, effort_m = ring
-    held = held_problem(a, b, weights, effort_m, step * count)
+    held = held_problem(*_ring(F, G, q, shape, effort), step * shape[0])
     steps, factor = held_steps(held)
+    n = shape[1]
     riccati, closed, residual, doublings = periodic_solution(steps)
     values, vectors = np.linalg.eig(product(closed)) if doublings > 0 else (np.array([np.inf]), np.zeros((n, 1)))
     if doublings < 0 or residual > 1e-6 or not np.abs(values).max() < 1.0 - 1e-9:
@@ -248,6 +299,14 @@ LAWS = (
         MEMORY,
         "beside a target, loads allocated to currents and thrusters",
         _pack_allocated,
+    ),
+    _law(
+        "tracking-scheduled",
+        tracking_periodic,
+        {**COMMON, **WEIGHTS},
+        MEMORY,
+        "beside a target, over the day each instant's own gain, within limits",
+        _pack_scheduled,
     ),
     _law(
         "tracking-periodic",
