@@ -102,15 +102,27 @@ def reach(b, r) -> np.ndarray:
 def continuous_steps(a, g, q, period_s: float) -> tuple[Steps, float]:
     """Steps of an input that may change at any time, g = b r^-1 b', and the factor by which their cost was multiplied."""
     factor = _cost_scale(g, q)
-    hamiltonian = np.concatenate(
-        [np.concatenate([a, -g / factor], axis=2), np.concatenate([-q * factor, -_mt(a)], axis=2)], axis=1
-    )
-    phi = transitions(hamiltonian, period_s)
-    n = a.shape[1]
+    return _passed(transitions(_hamiltonian(a, g / factor, q * factor), period_s)), factor
+
+
+def continuous_instants(a, g, q, step_s: float) -> tuple[Steps, float]:
+    """The same for coefficients that stay as they are at each node, whatever the others are."""
+    factor = _cost_scale(g, q)
+    return _passed(exponentials(step_s * _hamiltonian(a, g / factor, q * factor))), factor
+
+
+def _hamiltonian(a, g, q) -> np.ndarray:
+    """(N, 2 n, 2 n) of state and costate."""
+    return np.concatenate([np.concatenate([a, -g], axis=2), np.concatenate([-q, -_mt(a)], axis=2)], axis=1)
+
+
+def _passed(phi: np.ndarray) -> Steps:
+    """Equation (29) from the transitions of state and costate."""
+    n = phi.shape[1] // 2
     xx, xp, px, pp = phi[:, :n, :n], phi[:, :n, n:], phi[:, n:, :n], phi[:, n:, n:]
     G = -_mt(np.linalg.solve(_mt(pp), _mt(xp)))
     H = -np.linalg.solve(pp, px)
-    return _symmetric_steps(xx + G @ px, G, H), factor
+    return _symmetric_steps(xx + G @ px, G, H)
 
 
 def held_problem(a, b, q, r, period_s: float) -> Held:
@@ -224,7 +236,7 @@ def instants_solution(steps: Steps, tolerance: float = 1e-12) -> tuple[np.ndarra
 
     All instants are doubled at once; not finite, or not settled, where no regulator of that instant exists.
     """
-    moved = np.full(steps.A.shape[0], np.inf)
+    lost, moved = np.zeros(steps.A.shape[0], dtype=bool), np.full(steps.A.shape[0], np.inf)
     for _ in range(MOST_DOUBLINGS):
         try:
             with np.errstate(over="ignore", invalid="ignore"):
@@ -232,11 +244,12 @@ def instants_solution(steps: Steps, tolerance: float = 1e-12) -> tuple[np.ndarra
                 size = np.maximum(np.abs(double.H).max(axis=(1, 2)), 1e-300)
                 moved = np.abs(double.H - steps.H).max(axis=(1, 2)) / size
         except np.linalg.LinAlgError:
-            return steps.H, np.full(steps.A.shape[0], np.inf)
-        steps = double
-        if not np.isfinite(moved).all() or moved.max() <= tolerance:
+            return steps.H, np.full_like(moved, np.inf)
+        lost |= ~np.isfinite(moved + np.abs(double.G).max(axis=(1, 2)))
+        steps = Steps(*(np.where(lost[:, None, None], 0.0, one) for one in double))
+        if lost.all() or moved[~lost].max() <= tolerance:
             break
-    return steps.H, moved
+    return steps.H, np.where(lost, np.inf, moved)
 
 
 def disturbance_costate(P: np.ndarray, closed: np.ndarray, push: np.ndarray) -> np.ndarray:

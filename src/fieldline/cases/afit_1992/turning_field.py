@@ -2,8 +2,9 @@
 
     dx/dt = (F - G(t) K(t)) x,   x(t + T) = X(T) x(t),   stable if every eigenvalue of X(T) is inside the unit circle
 
-Three gains: "frozen", K of one instant (33 degrees over the equator) kept for good, as in appendix E; "scheduled", the
-regulator of each instant; "periodic", the regulator of the periodic system: over an equator in the time 2 pi/(n - we) in
+Four gains: "frozen", K of one instant (33 degrees over the equator) kept for good, as in appendix E; "allocated", K of a
+regulator of force and moment, which never changes, and the least controls that give them; "scheduled", the regulator of
+each instant; "periodic", the regulator of the periodic system: over an equator in the time 2 pi/(n - we) in
 which the field's angle closes, elsewhere over a sidereal day, in which the orbit is taken to go round a whole number of
 times (16 instead of 15.5). The commands are zero, the state is known.
 
@@ -25,14 +26,17 @@ from fieldline.cases.afit_1992.frozen_model import built, frozen_plant
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.erbs_like import number
 from fieldline.control.electrodynamic import Plant, electrodynamic_map
-from fieldline.control.periodic_system import exponentials
+from fieldline.control.frozen_regulator import frozen_regulator
+from fieldline.control.periodic_system import continuous_instants, exponentials, instants_solution
 from fieldline.environment.orbit_field import field_on_orbit_h
-from fieldline.errors import InputError, nearest, shown
-from fieldline.mechanics.relative_motion import input_matrix
+from fieldline.errors import InputError, NoEstimateError, nearest, shown
+from fieldline.mechanics.relative_motion import input_matrix, output_matrix
 
-CONTROLLERS = ("frozen", "scheduled", "periodic")
+CONTROLLERS = ("frozen", "allocated", "scheduled", "periodic")
 TRUTHS = ("dipole", "IGRF-14")
 MOST_STEPS = 20_000
+SMALL_STEP = 0.02  # radians of the orbit, the first that is doubled
+MOST_EFFORT = 1e4  # controls for the same loads, the dearest instant over the cheapest
 
 
 def turning_field(
@@ -51,7 +55,7 @@ def turning_field(
 
     Parameters
     ----------
-    case : of appendix E; gives vehicle and weights.      controller : "frozen", "scheduled" or "periodic".
+    case : of appendix E; gives vehicle and weights.      controller : "frozen", "allocated", "scheduled" or "periodic".
     inclination_deg : of the orbit; argument, node and Greenwich's angle are zero at the start.
     field_angle_deg : at which the frozen gain was made.      step_s : about; the duration is cut into equal steps.
     duration_s : a turn of the field's angle over the equator, a sidereal day elsewhere.
@@ -107,15 +111,50 @@ def _loop(case, controller, orbit: Circle, halves, turning, inclination_deg, fie
     if controller == "frozen":
         here, _ = frozen_plant(made, orbit, field_angle_deg)
         return plant, regulator_of(here, orbit, own.state_weight).gain
-    if controller == "scheduled":
-        return plant, np.array([regulator_of(plant._replace(G=g), orbit, own.state_weight).gain for g in plant.G])
+    if controller == "allocated":
+        return plant, _allocated_gains(plant, orbit, own.state_weight)
     n = orbit.mean_motion_rad_s
     scale = orbital_scale(n)
     weights = np.diag(own.state_weight * np.repeat([1.0, orbit.radius_m], 6) * scale * scale)
-    F, G = plant.F * scale / scale[:, None] / n, plant.G[:-1] / scale[:, None] / n
-    found = periodic_regulator(F, G, weights, np.eye(G.shape[-1]), n * halves[-1], control="continuous")
+    F, G = plant.F * scale / scale[:, None] / n, plant.G / scale[:, None] / n
+    if controller == "scheduled":
+        return plant, _scheduled_gains(F, G, weights) / scale
+    found = periodic_regulator(F, G[:-1], weights, np.eye(G.shape[-1]), n * halves[-1], control="continuous")
     gains = found["gain"].values / scale
     return plant, np.concatenate([gains, gains[:1]])
+
+
+def _scheduled_gains(F: np.ndarray, G: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """(N, m, 12) of the scaled problem: the regulator of each instant, as if the field stood still from there on."""
+    a, q = (np.broadcast_to(one, (len(G), 12, 12)) for one in (F, weights))
+    steps, factor = continuous_instants(a, G @ np.swapaxes(G, 1, 2), q, SMALL_STEP)
+    riccati, left = instants_solution(steps)
+    if not (left < 1e-6).all():
+        share = float((~(left < 1e-6)).mean())
+        raise NoEstimateError(
+            f"during {share:.1%} of the time no regulator of the instant was found: the field across the orbit vanishes there. "
+            'Take "periodic", which knows that it returns.'
+        )
+    return np.swapaxes(G, 1, 2) @ riccati / factor
+
+
+def _allocated_gains(plant: Plant, orbit: Circle, state_weight: float) -> np.ndarray:
+    """(N, m, 12) least controls for the accelerations of one regulator, weighed by the square of those controls, day's mean."""
+    n = orbit.mean_motion_rad_s
+    scale = orbital_scale(n)
+    inverse = np.linalg.pinv(plant.G[:, 1::2] / scale[1::2, None])
+    if not np.linalg.norm(inverse, axis=(1, 2)).max() < MOST_EFFORT * np.linalg.norm(inverse, axis=(1, 2)).min():
+        raise InputError(
+            'controller = "allocated" wants any force and moment at any time, and the field across the orbit vanishes at this '
+            'inclination; take "periodic".'
+        )
+    root = np.linalg.cholesky((np.swapaxes(inverse, 1, 2) @ inverse).mean(axis=0)).T  # R = root' root of the accelerations
+    pushes = np.zeros((12, 6))
+    pushes[1::2] = np.diag(scale[1::2])
+    weights = state_weight * np.repeat([1.0, orbit.radius_m], 6)
+    inputs = pushes @ np.linalg.inv(root)
+    found = frozen_regulator(plant.F, inputs, output_matrix(), weights, np.ones(6), rate=n, scale=scale)
+    return inverse @ (np.linalg.inv(root) @ found.gain)
 
 
 def log_multiplier(closed: np.ndarray, step_s: float) -> float:
