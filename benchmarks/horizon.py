@@ -247,12 +247,12 @@ def chapter(markdown) -> list[str]:
             for one in rows
             for sizes in [(f"{max(one.over, 0.0):.0e}", f"{one.first_off:.0e}")]
         ]
-        tables += [*markdown([head, *told]), ""]
+        tables += markdown([head, *told])
     text = (
         "The plan of `tracking-predictive`: 12 states, 9 controls, 30 stages, the same problems for all. First controls in parts "
-        "of their limits."
+        "of their limits. What is over the least there is a call that a solver gives up or ends too early."
     )
-    return ["### The plan against other solvers", "", text, "", *tables[:-1]]
+    return ["### The plan against other solvers", "", text, "", *tables]
 
 
 def _version(name: str) -> str:

@@ -31,7 +31,7 @@ def test_at_the_designs_own_inclination_the_frozen_gain_tumbles():
     assert float(found["tumble_s"]) == pytest.approx(21_000.0, abs=1000.0)
 
 
-@pytest.mark.parametrize("controller", ["allocated", "periodic"])
+@pytest.mark.parametrize("controller", ["allocated", "scheduled", "periodic"])
 def test_the_mended_ones_hold_there(controller):
     found = flown("standoff", controller, 28.5, duration_s=SIX_HOURS)
     assert found["rms_m"].values.max() < 0.1 and float(found["angle_deg"].max()) < 0.01
@@ -47,6 +47,39 @@ def test_a_field_off_by_a_third_leaves_hundreds_of_metres(scale, end):
 def test_the_disturbance_estimate_takes_them_out():
     found = flown("standoff", "allocated", 28.5, field_scale=0.7, disturbance_s=600.0, duration_s=SIX_HOURS)
     assert found["rms_m"].values.max() < 0.15
+
+
+WITHIN = {"place_m": (5.0, 100.0, 10.0), "current_max_a": 125.0, "thrust_max_n": 10.0, "duration_s": SIX_HOURS, "rate_hz": 0.2}
+OFF = {"low": {"field_scale": 0.7}, "high": {"field_scale": 1.3}, "real": {"field": "IGRF-14", "onboard": "dipole"}}
+
+
+@pytest.mark.parametrize("truth", OFF)
+@pytest.mark.parametrize("controller", ["allocated", "scheduled", "periodic", "predictive"])
+def test_no_law_is_lost_by_a_wrong_field_and_the_learned_load_gives_the_place_back(controller, truth):
+    way = WITHIN | OFF[truth] | ({"rate_hz": 0.1} if controller == "predictive" else {})
+    blind, learned = (flown("standoff", controller, 28.5, disturbance_s=one, **way) for one in (0.0, 600.0))
+    off, left = (float(np.linalg.norm(one["rms_m"].values)) for one in (blind, learned))
+    assert 0.3 < off < 2.0 and left < (0.75 if truth == "real" else 0.25) * off
+    assert float(learned["peak_current_a"]) <= 125.0 and float(learned["angle_deg"].max()) < 0.1
+
+
+AHEAD = {"place_m": (0.0, 100.0, 0.0), "start_m": (0.0, 110.0, 0.0), "current_max_a": 125.0, "thrust_max_n": 10.0}
+
+
+@pytest.mark.parametrize(
+    ("controller", "more", "holds"),
+    [
+        ("scheduled", {"field": "IGRF-14", "duration_s": SIX_HOURS}, False),
+        ("periodic", {"field": "IGRF-14", "duration_s": SIX_HOURS}, True),
+        ("periodic", {"duration_s": 45_000.0}, False),  # nothing turns it for longer than its pitch takes to grow
+        ("periodic", {"duration_s": 45_000.0, "towers_m": (330.0, 310.0)}, True),  # gravity does
+        ("predictive", {"duration_s": 45_000.0, "towers_m": (330.0, 310.0), "rate_hz": 0.1}, True),
+    ],
+)
+def test_where_the_field_across_vanishes_knowing_what_comes_and_gravity_hold(controller, more, holds):
+    found = flown("standoff", controller, 78.5, disturbance_s=600.0, **AHEAD, **more)
+    assert np.isnan(float(found["tumble_s"])) == holds
+    assert not holds or (found["rms_m"].values.max() < 0.1 and float(found["angle_deg"].max()) < 0.1)
 
 
 def test_drag_oblateness_eccentricity_and_a_dipole_on_board():
@@ -120,6 +153,7 @@ def test_contacts_that_take_less_in_the_dark_climb_slower():
         (lambda: flown("standof"), 'did you mean "standoff"'),
         (lambda: flown(controller="lqr"), "unknown"),
         (lambda: flown(place_m=(1.0, 2.0)), "three places"),
+        (lambda: flown(towers_m=(1.0, 2.0, 3.0)), "two lengths"),
         (lambda: linear_range((0.0, 1.0)), "rising numbers above zero"),
         (lambda: docking_standards(1), "runs must be"),
         (lambda: orbit_change(400.0), "nothing is to change"),

@@ -10,7 +10,9 @@ from scipy.spatial.transform import Rotation
 from fieldline.control import LAWS
 from fieldline.control.tracking import onboard_vehicle as own
 from fieldline.control.tracking.approach_path import path
+from fieldline.control.tracking.designs import periodic_gains, scheduled_gains
 from fieldline.control.tracking.relative_state import relative_state
+from fieldline.control.tracking.settings import COMMON, WEIGHTS, known_of, state_weights
 from fieldline.design import tank_with_towers
 from fieldline.errors import FieldlineError, InputError
 from fieldline.frames.orbital import dcm_oi
@@ -84,7 +86,7 @@ def test_the_path_starts_still_and_ends_with_its_rate():
     assert_allclose((place - before) / 2.0, rate, rtol=1e-5)
 
 
-@pytest.mark.parametrize("name", ["tracking-allocated", "tracking-periodic", "tracking-predictive"])
+@pytest.mark.parametrize("name", ["tracking-allocated", "tracking-scheduled", "tracking-periodic", "tracking-predictive"])
 def test_at_its_place_the_law_gives_what_the_place_asks(name):
     place = np.array([5.0, 100.0, 10.0])
     params = LAWS[name].pack({"place_h_m": place.tolist()}, CONTEXT)
@@ -144,6 +146,7 @@ TOO_FAST = {"place_h_m": (0.0, 5.0, 0.0), "from_h_m": (0.0, 9.0, 0.0), "move_s":
         ("tracking-allocated", {"place_h_m": (100.0, 0.0, 0.0)}, r"cannot be held within .* nearest .* is \(\d+\.?\d*, 0, 0\) m"),
         ("tracking-allocated", {"position_m": 0.0}, "position_m of the law .* must be more than zero"),
         ("tracking-frozen", {"state_weight": -1.0}, "state_weight of the law .* must be more than zero"),
+        ("tracking-scheduled", {"effort": 0.0}, "effort of the law .* must be more than zero"),
         ("tracking-periodic", {"effort": 0.0}, "effort of the law .* must be more than zero"),
         ("tracking-allocated", {"failed": ["I2x"]}, 'neither a conductor nor a thruster: "I2x"; did you mean "I2'),
         ("tracking-allocated", {"failed": "I2e"}, "is a list of names"),
@@ -156,6 +159,15 @@ TOO_FAST = {"place_h_m": (0.0, 5.0, 0.0), "from_h_m": (0.0, 9.0, 0.0), "move_s":
 def test_bad_input(law, table, words):
     with pytest.raises(InputError, match=words):
         LAWS[law].pack(table, CONTEXT)
+
+
+def test_a_place_along_the_orbit_asks_for_nothing_that_limits_refuse():
+    ahead = {"place_h_m": (0.0, 300.0, 0.0)}
+    context = replace(CONTEXT, field_along_orbit=no_field_across)  # half of the time nothing gives it the moment of y/r0
+    params = LAWS["tracking-allocated"].pack(ahead, context)
+    assert params[own.PATH + 4] == 300.0
+    with pytest.raises(InputError, match="nine tenths of the day"):
+        LAWS["tracking-allocated"].pack({"place_h_m": (5.0, 300.0, 0.0)}, context)
 
 
 def test_the_nearest_place_is_taken_where_that_is_asked():
@@ -191,6 +203,32 @@ def test_an_instant_out_of_reach_is_named_with_when_it_returns():
         InputError, match=r"the motion in .* cannot be reached .* because no control pushes along .* back to 0.001 after \d+ s"
     ):
         LAWS["tracking-frozen"].pack({"unreachable": "fly"}, context)  # fmt: skip
+
+
+def test_gains_of_each_instant_need_every_instant():
+    context = replace(CONTEXT, thrusters=(), field_along_orbit=no_field_across)
+    with pytest.raises(InputError, match=r"cannot be reached .* back to 0.001 after \d+ s"):
+        LAWS["tracking-scheduled"].pack({"unreachable": "fly"}, context)
+
+
+def test_each_instants_gain_is_the_regulator_of_that_instant_and_the_periodic_one_is_not():
+    from scipy.linalg import expm, solve_discrete_are
+
+    known = known_of("tracking-scheduled", {**COMMON, **WEIGHTS}, {}, CONTEXT)
+    gains, at = scheduled_gains(known), 37
+    both = np.zeros((21, 21))
+    both[:12, :12], both[:12, 12:] = known.motion, known.inputs[at] * known.limits
+    # the cost over a step by Simpson's rule on the exact motion, the input held
+    steps = [expm(both * known.step_s * share) for share in np.linspace(0.0, 1.0, 9)]
+    weight = np.zeros((21, 21))
+    weight[:12, :12], weight[12:, 12:] = np.diag(state_weights(known)), known.values["effort"] * np.eye(9)
+    simpson = known.step_s / 24.0 * np.array([1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0])
+    cost = sum(s * one.T @ weight @ one for s, one in zip(simpson, steps, strict=True))
+    A, B = steps[-1][:12, :12], steps[-1][:12, 12:]
+    P = solve_discrete_are(A, B, cost[:12, :12], cost[12:, 12:], s=cost[:12, 12:])
+    K = np.linalg.solve(cost[12:, 12:] + B.T @ P @ B, B.T @ P @ A + cost[:12, 12:].T) * known.limits[:, None]
+    assert_allclose(gains[at], K, atol=1e-5 * np.abs(K).max())
+    assert np.abs(periodic_gains(known)[at] - K).max() > 1e-2 * np.abs(K).max()
 
 
 def test_what_no_gains_reach_is_said_with_the_motion():

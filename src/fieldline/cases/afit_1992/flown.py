@@ -66,6 +66,7 @@ def flown(
     drag_area_m2: float = 0.0,
     eccentricity: float = 0.0,
     contact_limit_a: float | None = None,
+    towers_m=None,
 ):
     """A day of a case's vehicle under a controller on the plant, as a Dataset over `seconds`.
 
@@ -78,6 +79,7 @@ def flown(
     current_max_a, thrust_max_n : limits; far away by default, as in the thesis.
     disturbance_s : in which unknown loads are learned; 0 never.      gravity, drag_area_m2, eccentricity : of the surroundings.
     contact_limit_a : most current that the plasma takes from a contactor; lowers current_max_a.
+    towers_m : vertical and horizontal, (2,) [m]; the case's own by default. (330, 310) keeps upright by gravity.
 
     Returns
     -------
@@ -93,9 +95,10 @@ def flown(
         if not isinstance(value, str) or value not in known:
             raise InputError(f'{name} "{shown(str(value))}" is unknown; {nearest(str(value), known)}')
     own = APPROACHES[case]
-    made = built({"vertical_m": own.towers_m[0], "horizontal_m": own.towers_m[1], "arms": "centre"})
-    place = _place("place_m", own.target_m if place_m is None else place_m)
-    start = place if start_m is None else _place("start_m", start_m)
+    vertical, horizontal = own.towers_m if towers_m is None else _numbers("towers_m", towers_m, 2)
+    made = built({"vertical_m": vertical, "horizontal_m": horizontal, "arms": "centre"})
+    place = _numbers("place_m", own.target_m if place_m is None else place_m, 3)
+    start = place if start_m is None else _numbers("start_m", start_m, 3)
     for name in ("field_scale", "duration_s", "rate_hz", "step_s", "current_max_a", "thrust_max_n"):
         number(name, settings[name], 1e-9)
     limit = current_max_a if contact_limit_a is None else min(current_max_a, number("contact_limit_a", contact_limit_a, 1e-9))
@@ -120,15 +123,16 @@ def flown(
     return _dataset(_flight(scenario), place, settings)
 
 
-def _place(name: str, given) -> np.ndarray:
-    """(3,) [m], or a refusal."""
+def _numbers(name: str, given, count: int) -> np.ndarray:
+    """(count,) [m], or a refusal."""
     try:
-        place = np.asarray(given, dtype=float)
+        lengths = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        place = np.empty(0)
-    if place.shape != (3,) or not np.isfinite(place).all() or np.abs(place).max() > 1e5:
-        raise InputError(f"{name} must be three places x, y, z in metres, under 100 km; got {given!r}.")
-    return place
+        lengths = np.empty(0)
+    if lengths.shape != (count,) or not np.isfinite(lengths).all() or np.abs(lengths).max() > 1e5:
+        wanted = "three places x, y, z" if count == 3 else "two lengths, vertical and horizontal,"
+        raise InputError(f"{name} must be {wanted} in metres, under 100 km; got {given!r}.")
+    return lengths
 
 
 def _law(controller, state_weight, place, field_scale, disturbance_s, free: bool) -> tuple[str, dict]:

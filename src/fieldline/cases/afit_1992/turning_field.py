@@ -158,10 +158,17 @@ def _allocated_gains(plant: Plant, orbit: Circle, state_weight: float) -> np.nda
 
 
 def log_multiplier(closed: np.ndarray, step_s: float) -> float:
-    """Logarithm of the largest eigenvalue's size of the transition of closed (2 N + 1, n, n), nodes and midpoints [1/s]."""
+    """Logarithm of the largest eigenvalue's size of the transition of closed (2 N + 1, n, n), nodes and midpoints [1/s].
+
+    Infinite where a step alone grows beyond numbers, as with gains that peak.
+    """
     start, middle, end = closed[:-1:2], closed[1::2], closed[2::2]
     bend = start @ end - end @ start
-    steps = exponentials(step_s / 6.0 * (start + 4.0 * middle + end) - step_s**2 / 12.0 * bend)  # Magnus, fourth order
+    exponents = step_s / 6.0 * (start + 4.0 * middle + end) - step_s**2 / 12.0 * bend  # Magnus, fourth order
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = exponentials(exponents)
+    if not np.isfinite(steps).all():
+        return np.inf
     whole, size = np.eye(closed.shape[-1]), 0.0
     for step in steps:
         whole = step @ whole
