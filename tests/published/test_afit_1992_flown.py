@@ -147,6 +147,16 @@ def test_contacts_that_take_less_in_the_dark_climb_slower():
     assert 0.5 * climbs[0] < climbs[1] < 0.8 * climbs[0]
 
 
+@pytest.mark.parametrize("inclination", [0.0, 28.5])
+def test_the_plant_climbs_slower_by_what_its_contacts_lose_in_the_dark(inclination):
+    found = orbit_change(440.0, inclination_deg=inclination, days=1.0, flown_days=1.0, contact_dark_a=12.5)
+    orbit = slice(-46, None)  # of outputs: the swing within one is not of the averages
+    flown_m = float(found["flown_altitude_m"][orbit].mean()) - 400e3
+    averaged = float(found["altitude_m"].interp(seconds=found["flown_seconds"][orbit]).mean()) - 400e3
+    assert flown_m == pytest.approx(averaged, rel=0.015)
+    assert flown_m < 0.7 * (float(found["closed_altitude_m"][-1]) - 400e3)
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [

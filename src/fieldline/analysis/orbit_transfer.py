@@ -4,8 +4,8 @@
 
 F: the force of the currents of `control.tracking.orbit_change` at each argument of latitude u and each longitude of the
 node, which a day goes through; the orbit circular, the vehicle along its axes. Two limits of the plasma's contacts, in the
-light and in the dark: the ionosphere by night takes a tenth of the current and less. A shadow of the Earth's width lies
-about u_sun + 180 deg.
+light and in the dark: the ionosphere by night takes a tenth of the current and less. The shadow, a cylinder of the Earth's
+width, lies about u_sun + 180 deg; where the Sun stands over the plane it is shorter.
 
     power = sum R I^2 + F . (v - w x r)                                                             (2)
 
@@ -20,7 +20,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_GM_M3_S2, EARTH_ROTATION_RATE_RAD_S
-from fieldline.control.tracking.orbit_change import AXIS_SIZE, SOFTNESS, TILT, TILT_SIZE, WIRES
+from fieldline.control.tracking.orbit_change import AXIS_SIZE, DARK, SOFTNESS, TILT, TILT_SIZE, WIRES
 from fieldline.environment.orbit_field import field_on_orbit_h
 from fieldline.errors import InputError, NoEstimateError
 from fieldline.vehicle.conductor import Conductor
@@ -41,6 +41,7 @@ def orbit_transfer(
     contact_light_a: float = np.inf,
     contact_dark_a: float = np.inf,
     sun_argument_rad: float = 0.0,
+    sun_elevation_rad: float = 0.0,
     altitude_size_m: float = 10e3,
     inclination_size_rad: float = np.radians(0.1),
     softness: float = 0.1,
@@ -56,7 +57,8 @@ def orbit_transfer(
     conductors : records, body axes along up, velocity, normal.      mass_kg.
     altitude_m, inclination_rad : of the circular orbit at the start, over 6378.1366 km.      to_... : what is wanted.
     contact_light_a, contact_dark_a : most current of a contact in the light and in the dark.
-    sun_argument_rad : argument of latitude of the Sun's direction in the orbit's plane.
+    sun_argument_rad, sun_elevation_rad : argument of latitude of the Sun's direction in the orbit's plane, its height over it;
+        they stay, though in a month the Sun goes on by 30 degrees and the node by some 200.
     altitude_size_m, inclination_size_rad, softness : as of the law.      resistance_ohm : added to each conductor's own.
     model, time_utc : of the field.      step_s : of the averaged equations.
 
@@ -79,12 +81,26 @@ def orbit_transfer(
         raise InputError("contact limits must not be negative, altitudes at least 100 km in metres.")
     tilt = inclination_rad if to_inclination_rad is None else to_inclination_rad
     row = np.zeros(WIRES)
-    row[:] = [EARTH_EQUATORIAL_RADIUS_M + to_altitude_m, tilt, altitude_size_m, inclination_size_rad, softness, len(conductors)]
+    row[:DARK] = [
+        EARTH_EQUATORIAL_RADIUS_M + to_altitude_m,
+        tilt,
+        altitude_size_m,
+        inclination_size_rad,
+        softness,
+        len(conductors),
+    ]
     wires = np.array([one.length_m * np.array(one.direction_b) for one in conductors])
     bound = np.array([one.current_max_a for one in conductors])
     ohms = np.array([one.resistance_ohm for one in conductors]) + resistance_ohm
     dark = np.array([contact_light_a, contact_dark_a])
-    place = {"row": row, "wires": wires, "bound": bound, "ohms": ohms, "contact": dark, "sun": sun_argument_rad}
+    place = {
+        "row": row,
+        "wires": wires,
+        "bound": bound,
+        "ohms": ohms,
+        "contact": dark,
+        "sun": (sun_argument_rad, sun_elevation_rad),
+    }
     count = max(1, int(np.ceil(duration_s / step_s)))
     seconds = np.linspace(0.0, duration_s, count + 1)
     state = np.array([EARTH_EQUATORIAL_RADIUS_M + altitude_m, inclination_rad])
@@ -106,6 +122,12 @@ def _step(state, dt, first, mass, model, time_utc, place) -> np.ndarray:
     return state + dt / 6.0 * (first + 2.0 * k2 + 2.0 * k3 + k4)
 
 
+def shadow_half_width(a: float, sun_elevation_rad: float) -> float:
+    """[rad] of the argument of latitude in the Earth's shadow, a cylinder, either way of its middle: 0 where it is missed."""
+    lit = np.sqrt(max(0.0, 1.0 - (EARTH_EQUATORIAL_RADIUS_M / a) ** 2)) / max(np.cos(sun_elevation_rad), 1e-12)
+    return float(np.arccos(min(1.0, lit)))
+
+
 def _averages(state, mass, model, time_utc, *, row, wires, bound, ohms, contact, sun):
     """(da/dt, di/dt), mean power [W], mean share of current, mean current of all [A]: over argument and node."""
     a, i = float(state[0]), float(state[1])
@@ -117,8 +139,8 @@ def _averages(state, mass, model, time_utc, *, row, wires, bound, ohms, contact,
     size = 2.0 / (n * row[AXIS_SIZE]) * np.linalg.norm(wires, axis=1)[:, None, None] * np.linalg.norm(field_h, axis=-1)
     wanted = (row[0] - a) / row[AXIS_SIZE] ** 2 * 2.0 / n * push[..., 1]
     wanted = wanted + (row[TILT] - i) / row[TILT_SIZE] ** 2 * np.cos(u)[:, None] / (n * a) * push[..., 2]
-    half = np.arcsin(min(1.0, EARTH_EQUATORIAL_RADIUS_M / a))
-    off = np.abs((u - sun - np.pi + np.pi) % (2.0 * np.pi) - np.pi)
+    half = shadow_half_width(a, sun[1])
+    off = np.abs((u - sun[0]) % (2.0 * np.pi) - np.pi)
     limit = np.minimum(bound[:, None], np.where(off < half, contact[1], contact[0]))[:, :, None]
     current = limit * np.clip(wanted / (row[SOFTNESS] * size), -1.0, 1.0)
     force = np.einsum("muw,muwj->uwj", current, push)

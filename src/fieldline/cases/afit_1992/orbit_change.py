@@ -1,7 +1,7 @@
 """The tank changes its orbit: by the closed form of chapter 5, by averages over orbit and day, and flown on the plant.
 
 Its conductors along x and y, in pairs of equal currents, so that no moment is left; the towers are chosen so that C > B > A
-and gravity keeps it upright. A contact may take less current in the dark: the averages know that, the closed form does not.
+and gravity keeps it upright. A contact may take less current in the dark: averages and plant know that, the closed form does not.
 """
 
 from __future__ import annotations
@@ -9,12 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from fieldline.cases.afit_1992.earth import SOURCE
-from fieldline.cases.afit_1992.flown import vehicle_scenario
+from fieldline.cases.afit_1992.flown import START_UTC, vehicle_scenario
 from fieldline.cases.ames_1961.dipole_field import settings_text
 from fieldline.cases.erbs_like import number
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, SECONDS_PER_DAY
 from fieldline.design.conductor import spiral_radius
 from fieldline.design.tracking_vehicle import tank_with_towers
+from fieldline.environment.sun import sun_direction_i
 from fieldline.errors import InputError
 
 STEP_S = 10.0
@@ -38,7 +39,7 @@ def orbit_change(
     Parameters
     ----------
     to_altitude_km, to_inclination_deg : wanted; the inclination of the start by default.      altitude_km, inclination_deg.
-    days : of the averages.      flown_days : of the plant, up to 10 (one contact limit, the light's).
+    days : of the averages.      flown_days : of the plant, up to 10.
     contact_light_a, contact_dark_a : most current of a contact.      resistance_ohm : of each circuit.
 
     Returns
@@ -56,6 +57,7 @@ def orbit_change(
         number(name, settings[name], 150.0, 5000.0)
     number("inclination_deg", inclination_deg, 0.0, 180.0)
     _refuse_nothing(settings)
+    sun_i = sun_direction_i(np.datetime64(START_UTC))
     made = tank_with_towers(vertical_m=330.0, horizontal_m=310.0, thruster=False)
     pairs = [one for one in made.conductors if one.name[-1] in "udew"]
     tilt = inclination_deg if to_inclination_deg is None else number("to_inclination_deg", to_inclination_deg, 0.0, 180.0)
@@ -71,9 +73,22 @@ def orbit_change(
         contact_dark_a=number("contact_dark_a", contact_dark_a, 0.0),
         resistance_ohm=resistance_ohm,
         time_utc="2025-03-01",
+        **_sun_over(sun_i, np.radians(inclination_deg)),
     )
-    flown = _flown(made, pairs, tilt, settings) if flown_days > 0.0 else None
+    flown = _flown(made, pairs, tilt, sun_i, settings) if flown_days > 0.0 else None
     return _dataset(found, flown, _closed(found, made, pairs, settings), settings)
+
+
+def _sun_over(sun_i: np.ndarray, inclination: float) -> dict[str, float]:
+    """Where the Sun stands for an orbit whose node is on the vernal equinox."""
+    ahead, normal = (
+        np.array([0.0, np.cos(inclination), np.sin(inclination)]),
+        np.array([0.0, -np.sin(inclination), np.cos(inclination)]),
+    )
+    return {
+        "sun_argument_rad": float(np.arctan2(ahead @ sun_i, sun_i[0])),
+        "sun_elevation_rad": float(np.arcsin(normal @ sun_i)),
+    }
 
 
 def _closed(found, made, pairs, settings) -> np.ndarray:
@@ -92,12 +107,14 @@ def _closed(found, made, pairs, settings) -> np.ndarray:
     return np.minimum(heights, end) if way >= 0 else np.maximum(heights, end)
 
 
-def _flown(made, pairs, tilt: float, settings) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _flown(made, pairs, tilt: float, sun_i: np.ndarray, settings) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(seconds, height of the semi-major axis [m], inclination [deg]) on the plant, the means of an orbit."""
     from fieldline.orbit.elements import elements_from_state
     from fieldline.simulate.run import simulate
 
     parameters = {"altitude_km": settings["to_altitude_km"], "inclination_deg": tilt}
+    if settings["contact_dark_a"] < settings["contact_light_a"]:
+        parameters |= {"contact_dark_a": settings["contact_dark_a"], "sun_i": sun_i.tolist()}
     scenario = vehicle_scenario(
         made,
         "orbit-by-current",

@@ -8,27 +8,33 @@ bad as each other; |S|: the size that S_k has for an error of one da; s: softnes
 fall of ((a1 - a)/da)^2 + ((i1 - i)/di)^2: every current takes from it. To turn the plane at one height, vertical
 conductors push ahead in two quarters of an orbit and back in the others; nobody has to say so: it follows as a drifts.
 
+limit_k is the conductor's own, and what a plasma contact takes: less in the Earth's shadow, a cylinder, about a Sun that goes
+on by 360 degrees a year.
+
 Osculating a and i swing by the oblateness (9 km, 0.01 deg in low orbit): what is below that is not told apart.
 Source: Gauss's equations for small eccentricity, Vallado (2013), Fundamentals of Astrodynamics, 4th ed., s. 9.3.2.
 """
 
 from __future__ import annotations
 
-from math import acos, cos, sqrt
+from math import acos, cos, pi, radians, sin, sqrt
 
 import numpy as np
 from numba import njit
 
-from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_GM_M3_S2
+from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_GM_M3_S2, SECONDS_PER_DAY
 from fieldline.control.law import Law, Parameter, complete
 from fieldline.control.orbital_axes import argument_of_latitude
 from fieldline.control.readings import attitude_known, finite3, lifted, orbit_known
 from fieldline.errors import InputError
 from fieldline.frames.attitude import to_body
-from fieldline.frames.vectors import cross, dot, norm, unit
+from fieldline.frames.vectors import axpy, cross, dot, norm, scale, unit
 
-AXIS, TILT, AXIS_SIZE, TILT_SIZE, SOFTNESS, CONDUCTORS, WIRES = range(7)  # then wire (3) and limit of each conductor
-SMALL_TESLA = 1e-12
+AXIS, TILT, AXIS_SIZE, TILT_SIZE, SOFTNESS, CONDUCTORS, DARK, SUN, WIRES = 0, 1, 2, 3, 4, 5, 6, 7, 10  # SUN (3)
+# then wire (3) and limit of each conductor
+ECLIPTIC_POLE_I = (0.0, -sin(radians(23.4393)), cos(radians(23.4393)))
+SUN_RATE_RAD_S = 2.0 * pi / (365.2422 * SECONDS_PER_DAY)
+SMALL_TESLA, LIMITLESS = 1e-12, 1e30
 
 
 @njit(cache=True, error_model="numpy")
@@ -52,6 +58,17 @@ def current_share(a, i, u, field_h, wire_h, params):
 
 
 @njit(cache=True, error_model="numpy")
+def contact_limit(t, r_i, params):
+    """Most current [A] of a contact in the shadow at r_i [m], t [s] after the Sun stood at SUN; infinite in the light."""
+    first = (params[SUN], params[SUN + 1], params[SUN + 2])
+    angle = SUN_RATE_RAD_S * t
+    sun = axpy(sin(angle), cross(ECLIPTIC_POLE_I, first), scale(cos(angle), first))
+    along = dot(r_i, sun)
+    dark = along < 0.0 and norm(axpy(-along, sun, r_i)) < EARTH_EQUATORIAL_RADIUS_M
+    return params[DARK] if dark else LIMITLESS
+
+
+@njit(cache=True, error_model="numpy")
 def orbit_by_current(t, measurement, memory, params):
     """Currents [A] of equation (2)."""
     count = int(params[CONDUCTORS])
@@ -69,11 +86,12 @@ def orbit_by_current(t, measurement, memory, params):
     up, ahead = to_body(q, unit(r)), to_body(q, cross(normal, unit(r)))
     across, field_b = to_body(q, normal), to_body(q, field_i)
     field_h = (dot(up, field_b), dot(ahead, field_b), dot(across, field_b))
+    most = contact_limit(t, r, params)
     for k in range(count):
         at = WIRES + 4 * k
         wire = (params[at], params[at + 1], params[at + 2])
         wire_h = (dot(up, wire), dot(ahead, wire), dot(across, wire))
-        out[k] = params[at + 3] * current_share(a, i, u, field_h, wire_h, params)
+        out[k] = min(params[at + 3], most) * current_share(a, i, u, field_h, wire_h, params)
     memory[0] = t
     return out
 
@@ -85,6 +103,13 @@ PARAMETERS = {
     "inclination_size_deg": Parameter("deg", "error of the inclination that is", 0.1, "positive"),
     "softness": Parameter("", "errors, in such sizes, below which less than full current flows", 0.1, "positive"),
     "contact_limit_a": Parameter("A", "most current that a plasma contact takes; 0 is no limit", 0.0, "not negative"),
+    "contact_dark_a": Parameter(
+        "A",
+        "the same in the Earth's shadow, for which sun_i is needed; derived as in the light",
+        kind="not negative",
+        derived=True,
+    ),
+    "sun_i": Parameter("", "direction of the Sun at the start, GCRS; derived as none", kind="vector", derived=True),
 }
 
 
@@ -95,7 +120,11 @@ def transfer_row(values: dict, conductors, inclination_rad: float) -> np.ndarray
     rows = [[*(one.length_m * np.array(one.direction_b)), min(one.current_max_a, most)] for one in conductors]
     axis = EARTH_EQUATORIAL_RADIUS_M + 1e3 * values["altitude_km"]
     sizes = 1e3 * values["altitude_size_km"], np.radians(values["inclination_size_deg"])
-    return np.concatenate([[axis, tilt, *sizes, values["softness"], len(rows)], np.ravel(rows)])
+    dark, sun = values.get("contact_dark_a"), values.get("sun_i")
+    if (dark is None) != (sun is None) or (sun is not None and not np.linalg.norm(sun) > 0.0):
+        raise InputError("contact_dark_a and sun_i, a direction, belong together: the shadow is where the Sun is not. Give both.")
+    shadow = [LIMITLESS, 0.0, 0.0, 0.0] if dark is None else [dark, *(np.asarray(sun) / np.linalg.norm(sun))]
+    return np.concatenate([[axis, tilt, *sizes, values["softness"], len(rows), *shadow], np.ravel(rows)])
 
 
 def _pack(table, context) -> np.ndarray:
