@@ -29,6 +29,7 @@ TEMPLATES = {
     "z-bar": "the same from the side, by prediction",
     "docking": "a small satellite with booms docks by currents",
     "boom-attitude": "its attitude alone, by currents",
+    "orbit-change": "a tank with towers climbs by currents, less in the dark",
 }
 
 
