@@ -231,10 +231,28 @@ def test_each_instants_gain_is_the_regulator_of_that_instant_and_the_periodic_on
     assert np.abs(periodic_gains(known)[at] - K).max() > 1e-2 * np.abs(K).max()
 
 
+@pytest.mark.parametrize("name", [name for name in LAWS if name.startswith("tracking-")])
+def test_conductors_of_one_direction_say_which_cannot_be_pushed(name):
+    failed = [one.name for one in TANK.conductors if one.direction_b[1] == 0.0] + ["south", "north"]
+    with pytest.raises(InputError, match=r"all conductors lie along \(0, 1, 0\) .* no force along that direction"):
+        LAWS[name].pack({"failed": failed}, CONTEXT)
+
+
+def test_a_place_beyond_the_linear_motion_is_flagged_with_its_error():
+    with pytest.raises(InputError, match=r"is 60 km from the target, where the linear motion .* by 1.3 % .* 1 % is at 4\d.* km"):
+        LAWS["tracking-allocated"].pack({"place_h_m": (60e3, 0.0, 0.0)}, CONTEXT)
+    LAWS["tracking-allocated"].pack({"place_h_m": (60e3, 0.0, 0.0), "unreachable": "fly"}, CONTEXT)
+
+
 def test_what_no_gains_reach_is_said_with_the_motion():
-    along = tuple(Conductor(position_b_m=(0.0, y, 0.0), direction_b=(0.0, 1.0, 0.0), length_m=50.0) for y in (-30.0, 30.0))
+    axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    along = tuple(
+        Conductor(position_b_m=tuple(side * 30.0 * part for part in axis), direction_b=axis, length_m=50.0)
+        for axis in axes
+        for side in (-1.0, 1.0)
+    )
     seconds, _, h = field_over_the_equator()
-    flat = np.column_stack([0.0 * seconds, 0.0 * seconds, h[:, 2]])  # across alone: pushes up and down, turns about nothing
+    flat = np.column_stack([0.0 * seconds, 0.0 * seconds, h[:, 2]])  # across alone: pushes in the plane, turns about the normal
     context = replace(CONTEXT, conductors=along, thrusters=(), field_along_orbit=lambda: (seconds, flat @ H_TO_O.T, flat))
     with pytest.raises(FieldlineError, match="no periodic regulator keeps this vehicle"):
         LAWS["tracking-periodic"].pack({"unreachable": "fly"}, context)

@@ -14,9 +14,11 @@ from fieldline.control.tracking.reachable import nearest_held
 from fieldline.control.tracking.tracking_loop import MOST_CONTROLS
 from fieldline.errors import InputError
 from fieldline.mechanics.lorentz import conductor_map
-from fieldline.mechanics.relative_motion import input_matrix, motion_matrix
+from fieldline.mechanics.relative_motion import input_matrix, linearisation_error, motion_matrix
+from fieldline.vehicle.conductor import refuse_parallel
 
 LIMITLESS = 1e30
+MOST_LINEAR = 0.01  # error of the linear motion's gravity at a place, of the gradient
 ATTITUDE_FIRST = 10.0  # weight of moments beside forces where limits do not leave both: a place waits, a tumble does not
 QUIET = 1e-2  # weight of the force where attitude alone is held: none is wanted, but it matters less
 ACROSS_HO = np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])  # orbital axes o to axes h
@@ -90,6 +92,7 @@ def known_of(law: str, parameters: dict, table, context) -> Known:
     controls, names = own.controls_of(context.conductors, context.thrusters, values["failed"], values["contactor_ohm"])
     if len(controls) > MOST_CONTROLS:
         raise InputError(f'the law "{law}" takes up to {MOST_CONTROLS} controls; the body has {len(controls)}.')
+    _refuse_one_direction(values, context.conductors, controls)
     seconds, field_o, _ = context.field_along_orbit()
     fields = values["field_factor"] * field_o @ ACROSS_HO.T
     n, radius = context.mean_motion_rad_s, context.radius_m
@@ -116,6 +119,15 @@ def known_of(law: str, parameters: dict, table, context) -> Known:
     )
 
 
+def _refuse_one_direction(values, conductors, controls: np.ndarray) -> None:
+    """InputError where all that works for a place are conductors of one direction, which nothing then pushes along."""
+    works = controls[:, own.UPPER] > controls[:, own.LOWER]
+    jets = works & (controls[:, own.IS_THRUSTER] > 0.5)
+    wires = [one for one, runs in zip(conductors, works[: len(conductors)], strict=True) if runs]
+    if values["hold"] == "all" and wires and not jets.any():
+        refuse_parallel(wires)
+
+
 def effects_of(controls: np.ndarray, fields_h: np.ndarray) -> np.ndarray:
     """(N, 6, m) loads of each control in fields_h (N, 3) [T], the body along axes h."""
     wires, points = controls[:, own.WIRE : own.WIRE + 3], controls[:, own.POINT : own.POINT + 3]
@@ -130,6 +142,14 @@ def _place(law, values, controls, effects, mass, moments, n, radius, sizes) -> n
     place = np.asarray(values["place_h_m"], dtype=float)
     if values["hold"] == "attitude" or values["unreachable"] == "fly" or not place.any():
         return place
+    error = float(linearisation_error(radius, place))
+    if error > MOST_LINEAR:
+        away = 1e-3 * float(np.linalg.norm(place))
+        raise InputError(
+            f'place_h_m of the law "{law}" is {away:.4g} km from the target, where the linear motion that it reckons with is wrong by '
+            f"{100.0 * error:.2g} % of gravity's gradient; {100.0 * MOST_LINEAR:g} % is at {away * MOST_LINEAR / error:.3g} km on the "
+            'way there. Come nearer, or set unreachable = "fly".'
+        )
     weights = 1.0 / np.maximum(sizes, 1e-6 * sizes.max())
     held = nearest_held(place, effects, controls, mass, moments, n, radius, weights)
     if held >= 1.0 - 1e-6:
