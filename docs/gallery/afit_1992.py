@@ -24,6 +24,7 @@ from fieldline.cases.afit_1992 import (
     vehicle,
 )
 from fieldline.cases.afit_1992.field_in_orbit import INCLINATIONS_DEG
+from fieldline.errors import NoEstimateError
 from fieldline.report.afit_1992_figures import MICROTESLA, lost_figure, lqr_figure, powers, vehicle_figure
 from fieldline.report.case_figure import case_figure
 from fieldline.report.series import legend, line
@@ -109,16 +110,32 @@ def stepping():
 
 
 def inclined():
-    """Multipliers of the frozen gains over a day against the inclination."""
-    figure, axes = panels(1, 1, height_in=3.0)
-    inclinations = np.append(1e-3, np.arange(3.0, 61.0, 3.0))
-    for case, colour in zip(("standoff", "r-bar", "v-bar"), AXIS_COLOURS, strict=True):
-        found = [float(turning_field(case, "frozen", i, step_s=30.0)["log_multiplier"]) for i in inclinations]
-        axes[0, 0].plot(inclinations, found, ".-", color=colour, label=case, markersize=4.0)
-    axes[0, 0].axhline(0.0, color=INK, linewidth=0.7)
-    axes[0, 0].set(xlabel="inclination [deg]", ylabel="log of the multiplier, a day", ylim=(-100.0, 150.0), xlim=(0.0, 60.0))
-    legend(axes[0, 0])
+    """Multipliers over a day against the inclination: frozen gains, each instant's, and those that know how the field turns."""
+    figure, axes = panels(2, 1, height_in=5.6, row_gap=0.42)
+    cases = list(zip(("standoff", "r-bar", "v-bar"), AXIS_COLOURS, strict=True))
+    low, high = np.append(1e-3, np.arange(3.0, 61.0, 3.0)), np.append(1e-3, np.arange(6.0, 91.0, 6.0))
+    for case, colour in cases:
+        found = [log_multiplier(case, "frozen", i, 30.0) for i in low]
+        axes[0, 0].plot(low, found, ".-", color=colour, label=case, markersize=4.0)
+        found = [log_multiplier(case, "periodic", i, 60.0) for i in high]
+        axes[1, 0].plot(high, found, ".-", color=colour, label=f"{case}, over the day", markersize=4.0)
+        found = [log_multiplier(case, "scheduled", i, 60.0) for i in high]
+        axes[1, 0].plot(high, found, "o", color=colour, label=f"{case}, each instant's", markersize=7.0, fillstyle="none")
+    axes[0, 0].set(title="frozen gains", ylim=(-100.0, 150.0), xlim=(0.0, 60.0))
+    axes[1, 0].set(title="gains that follow the field", ylim=(-100.0, 40.0), xlim=(0.0, 90.0))
+    for panel in axes[:, 0]:
+        panel.axhline(0.0, color=INK, linewidth=0.7)
+        panel.set(xlabel="inclination [deg]", ylabel="log of the multiplier, a day")
+        legend(panel)
     save(figure, "turning_field")
+
+
+def log_multiplier(case, controller, inclination, step_s):
+    """Over a day; NaN where there is no such gain."""
+    try:
+        return float(turning_field(case, controller, inclination, step_s=step_s)["log_multiplier"])
+    except NoEstimateError:
+        return np.nan
 
 
 if __name__ == "__main__":
