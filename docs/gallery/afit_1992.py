@@ -118,15 +118,15 @@ def inclined():
         found = [log_multiplier(case, "frozen", i, 30.0) for i in low]
         axes[0, 0].plot(low, found, ".-", color=colour, label=case, markersize=4.0)
         found = [log_multiplier(case, "periodic", i, 60.0) for i in high]
-        axes[1, 0].plot(high, found, ".-", color=colour, label=f"{case}, over the day", markersize=4.0)
+        axes[1, 0].plot(high, found, ".-", color=colour, markersize=4.0)
         found = [log_multiplier(case, "scheduled", i, 60.0) for i in high]
-        axes[1, 0].plot(high, found, "o", color=colour, label=f"{case}, each instant's", markersize=7.0, fillstyle="none")
+        axes[1, 0].plot(high, found, "o", color=colour, markersize=7.0, fillstyle="none")
     axes[0, 0].set(title="frozen gains", ylim=(-100.0, 150.0), xlim=(0.0, 60.0))
-    axes[1, 0].set(title="gains that follow the field", ylim=(-100.0, 40.0), xlim=(0.0, 90.0))
+    axes[1, 0].set(title="gains over the day; rings: each instant's own", ylim=(-100.0, 40.0), xlim=(0.0, 90.0))
     for panel in axes[:, 0]:
         panel.axhline(0.0, color=INK, linewidth=0.7)
         panel.set(xlabel="inclination [deg]", ylabel="log of the multiplier, a day")
-        legend(panel)
+    legend(axes[0, 0])
     save(figure, "turning_field")
 
 

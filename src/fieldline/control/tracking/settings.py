@@ -147,9 +147,9 @@ def _place(law, values, controls, effects, mass, moments, n, radius, sizes) -> n
         away = 1e-3 * float(np.linalg.norm(place))
         most, near = 100.0 * MOST_LINEAR, away * MOST_LINEAR / error
         raise InputError(
-            f'place_h_m of the law "{law}" is {away:.4g} km from the target, where the linear motion that it reckons with is wrong '
-            f"by {100.0 * error:.2g} % of gravity's gradient; {most:g} % is at {near:.3g} km on the way there. Come nearer, or set "
-            'unreachable = "fly".'
+            f'place_h_m of the law "{law}" is {away:.4g} km from the target, where the linear motion that it reckons with is '
+            f"wrong by {100.0 * error:.2g} % of gravity's gradient; {most:g} % is at {near:.3g} km on the way there. Come "
+            'nearer, or set unreachable = "fly".'
         )
     weights = 1.0 / np.maximum(sizes, 1e-6 * sizes.max())
     held = nearest_held(place, effects, controls, mass, moments, n, radius, weights)
