@@ -43,7 +43,9 @@ def skiprope(
         Path,
         typer.Argument(help="Telemetry: CSV, Parquet, NetCDF or CDF; - for rows of text on standard input.", show_default=False),
     ],
-    tether_length_m: Annotated[float, typer.Option(help="Length of the tether, in m.", show_default=False)],
+    tether_length_m: Annotated[
+        float | None, typer.Option(help="Length of the tether, in m; or give --tether-lengths.", show_default=False)
+    ] = None,
     orbit: options.Orbit = None,
     frequency_hz: Annotated[
         float | None, typer.Option(help="A first frequency of the skiprope; found by default.", show_default=False)
@@ -68,6 +70,22 @@ def skiprope(
     reeled: Annotated[
         bool, typer.Option("--reeled", help="Kalman: the tether is paid out or taken in; its frequency runs.")
     ] = False,
+    tether_lengths: Annotated[
+        Path | None,
+        typer.Option(
+            help="Of a tether on the reel: a table with time_utc and length_m; may be the telemetry.", show_default=False
+        ),
+    ] = None,
+    end_mass_kg: Annotated[
+        float | None, typer.Option(help="Mass of the lighter end; narrows the search, with --tether-g-per-m.", show_default=False)
+    ] = None,
+    tether_g_per_m: Annotated[float | None, typer.Option(help="Mass of a metre of tether, in g.", show_default=False)] = None,
+    swing_hz: Annotated[
+        str | None,
+        typer.Option(
+            help="Frequency of the satellite's swing on its tether, or found; taken off the deflection.", show_default=False
+        ),
+    ] = None,
     ignore_yaw: Annotated[bool, typer.Option("--ignore-yaw", help="Leave a yaw column of the telemetry aside.")] = False,
     model: options.Model = "IGRF-14",
     calibration: Annotated[str, typer.Option(help="none, auto, bias, full, or a FILE of `fieldline calibrate`.")] = "none",
@@ -112,8 +130,16 @@ def skiprope(
         "tether_length_m": tether_length_m, "frequency_hz": frequency_hz, "method": method, "model": model, "plane": plane,
         "sensor_axes": sensor_axes, "attitude_deg": three_angles(attitude_deg), "tether": tether, "use_yaw": not ignore_yaw,
         "steady_s": steady_s,
-        "reeled": reeled,
+        "reeled": reeled, "end_mass_kg": end_mass_kg,
+        "tether_kg_m": None if tether_g_per_m is None else 1e-3 * tether_g_per_m, "swing": swing_of(swing_hz),
     }  # fmt: skip
+    if tether_lengths is not None:
+        from fieldline.estimation.skiprope_telemetry import read_tether_lengths
+
+        settings["lengths"] = read_tether_lengths(tether_lengths)
+    from fieldline.estimation.skiprope_telemetry.face import length_of
+
+    settings["tether_length_m"] = length_of(tether_length_m, settings.get("lengths"))
     live = follow or str(telemetry) == STREAM
     only = {"--state": state, "--every-s": every_s, "--memory-s": memory_s, "--stop-after-s": stop_after_s}
     asked = [name for name, value in only.items() if value is not None]
@@ -216,6 +242,16 @@ def chosen(calibration: Any, time_utc: Any) -> Any:
     from fieldline.estimation.calibration_file import nearest_in_time
 
     return nearest_in_time(calibration, time_utc)
+
+
+def swing_of(text: str | None) -> float | str | None:
+    """A frequency, the word found, or nothing."""
+    if text is None or text == "found":
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f'--swing-hz is a frequency in Hz, or the word found; got "{text}".') from None
 
 
 def three_angles(text: str) -> tuple[float, float, float]:

@@ -100,6 +100,22 @@ def arm_azimuth(plan: YawPlan, seconds) -> np.ndarray:
     return plan.arm_azimuth_rad + plan.rate_rad_s * (np.clip(times, plan.start_s, plan.stop_s) - plan.start_s)
 
 
+def yaw_by(plan: YawPlan, seconds: float, ramp_s: float) -> tuple[float, float, float]:
+    """Azimuth turned [rad], its rate and acceleration at a time [s], for a body that takes ramp_s [s] to reach its rate.
+
+    The ramps lie about start and stop, so that between them the arm stands where the plan has it.
+    """
+    half = 0.5 * ramp_s
+    angle = rate = acceleration = 0.0
+    for sign, since in ((1.0, seconds - plan.start_s), (-1.0, seconds - plan.stop_s)):
+        if since >= half:
+            angle, rate = angle + sign * since, rate + sign
+        elif since > -half:
+            angle, rate = angle + sign * (since + half) ** 2 / (2.0 * ramp_s), rate + sign * (since + half) / ramp_s
+            acceleration += sign / ramp_s
+    return plan.rate_rad_s * angle, plan.rate_rad_s * rate, plan.rate_rad_s * acceleration
+
+
 def left_after(deflection_m: float, arm_m: float, rate_rad_s: float, duration_s: float, off_rad: float = 0.0) -> float:
     """[m] |A| of (2) after a yaw of `duration_s` [s] with the arm off by `off_rad` [rad]."""
     return float(abs(deflection_m - arm_m * abs(rate_rad_s) / np.pi * duration_s * np.exp(1j * off_rad)))

@@ -25,7 +25,7 @@ from fieldline.estimation.skiprope.track import Track
 TURN = 2.0 * np.pi
 FEWEST_SAMPLES = 60  # of a window: three times the unknowns
 SAMPLES_PER_PERIOD = 24  # of the fastest motion fitted; takes 0.3 % off its amplitude and nothing off the cone's
-ROUNDS = 2
+ROUNDS = 3  # the second leaves errors of 2 deg in the known field times 3 deg of swing in the amplitude
 UNEVEN = "the phases of the windows do not advance evenly: from {:.4g} mHz the frequency ran to {:.4g} mHz, and was not followed."
 NEAR_LINE = 0.25  # of a line's width: the spectrum's top is surely nearer than this to the frequency
 SURE_SENSE = 2.0  # standard deviations by which the two turning parts must differ

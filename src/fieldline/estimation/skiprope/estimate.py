@@ -111,10 +111,12 @@ def estimate_skiprope(
     measured = yaw_rad is not None
     yaw = _yaw(yaw_rad, signals)
     turned = signals.turned(yaw) if measured else signals
-    coarse = turned.thinned(1.0 / (BINS * max(band_hz[1], frequency_hz or 0.0)))
+    fastest = max(band_hz[1], frequency_hz or 0.0, BAND_HZ[1])
+    coarse = turned.thinned(1.0 / (BINS * fastest))
     off_rad = _disagreement(coarse)
     sought = coarse.between(coarse.seconds[0], coarse.seconds[0] + REELED_S) if reeled else coarse
-    found = detect(sought, band_hz=_band(frequency_hz, band_hz), false_alarm=false_alarm)
+    band = _band(frequency_hz, band_hz)
+    found = detect(sought, band_hz=band, highest_hz=5.0 * max(band[1], BAND_HZ[1]), false_alarm=false_alarm)
     line = found.cone if frequency_hz is None else _line_near(found, positive("frequency_hz", frequency_hz))
     found = found._replace(cone=line, others=tuple(other for other in found.lines if other is not line))
     if line is None:

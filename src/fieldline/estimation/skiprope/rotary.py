@@ -17,8 +17,8 @@ apart, passes the threshold x with
 
     P = 1 - F(x)^N,     F the distribution of chi-squared of 4 K                                                    (3)
 
-What the known field does within a short record is not smooth in frequency: a line with fewer than six periods must have
-0.06 deg besides.
+What the known field does within a short record, and between 1.2 and 2 mHz in any, is not smooth in frequency: its errors make
+lines of 0.02 to 0.05 deg there. A line with fewer than six periods, or below 2 mHz, must have 0.06 deg besides.
 
 What turns is told from what swings by the share of the power in which the two parts differ; the pendulous motion of TP-3123
 swings in a plane. Lines above the band asked for are never taken for the cone: they are listed as other motions.
@@ -45,7 +45,7 @@ SLOW_BINS = 50  # over 1 / SLOW_HZ: enough to fit what is slow
 LEAST_DEGREE = 3
 LEAST_TURNING = 0.2  # of a line that turns
 LEAST_SHARE = 0.1  # of the strongest turning line's amplitude: a weaker one is not taken for the cone
-LEAST_RAD = np.radians(0.06)  # of a line with fewer than six periods in the record: field errors reach half of that
+LEAST_RAD = np.radians(0.06)  # of a line of few periods, or below the usual band: field errors reach 0.05
 FEW_PERIODS = 6.0
 SIDE = 6  # widths on either side of a line that the noise is taken from
 FROM_FEW = 1.2  # times (3)'s threshold: the noise is known from some tens of values
@@ -112,7 +112,8 @@ def detect(signals: SkipropeSignals, *, band_hz=BAND_HZ, highest_hz: float | Non
     median, threshold = chi2_levels(4 * found.pieces, false_alarm, max((high - low) * found.piece_s / CELL, 1.0))
     near = _near(found.power, found.frequency_hz, width)
     floor = median / threshold * (LEAST_RAD / found.unit_rad) ** 2
-    near = np.where(found.frequency_hz * found.piece_s < FEW_PERIODS, np.maximum(near, floor), near)
+    doubtful = (found.frequency_hz * found.piece_s < FEW_PERIODS) | (found.frequency_hz < BAND_HZ[0])
+    near = np.where(doubtful, np.maximum(near, floor), near)
     strength = found.power / near * median
     lines = _lines(found, strength, threshold, width, low)
     cone = _cone([line for line in lines if line.frequency_hz <= high])

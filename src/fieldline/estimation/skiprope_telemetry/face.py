@@ -7,9 +7,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fieldline.errors import InputError
 from fieldline.estimation.skiprope_telemetry.dataset import skiprope_dataset
 from fieldline.estimation.skiprope_telemetry.mounting import Mounting
 from fieldline.estimation.skiprope_telemetry.solving import SkipropeSettings, Solved, solve_rows
+from fieldline.estimation.skiprope_telemetry.tether import TetherLengths
 from fieldline.orbit import Orbit
 from fieldline.telemetry import Telemetry
 from fieldline.telemetry.averaging import averaged, comes_fast
@@ -22,7 +24,7 @@ def estimate_skiprope(
     telemetry: Telemetry,
     orbit: Orbit | None = None,
     *,
-    tether_length_m: float,
+    tether_length_m: float | None = None,
     frequency_hz: float | None = None,
     method: str = "harmonic",
     model="IGRF-14",
@@ -34,6 +36,10 @@ def estimate_skiprope(
     use_yaw: bool = True,
     steady_s: float | None = None,
     reeled: bool = False,
+    lengths: TetherLengths | None = None,
+    end_mass_kg: float | None = None,
+    tether_kg_m: float | None = None,
+    swing: float | str | None = None,
     progress: Callable[[str, float, float, str], None] | None = None,
 ):
     """Skiprope of a tethered satellite from its magnetometer: amplitude, frequency, sense, plane, each with an uncertainty.
@@ -42,7 +48,11 @@ def estimate_skiprope(
     ----------
     telemetry : as `read_telemetry` gives it; the satellite points at the Earth and hangs on the tether.
     orbit : as `read_orbit` gives it; None takes the telemetry's own positions.
-    tether_length_m : [m] between the two bodies.      frequency_hz : a first frequency [Hz]; found by default.
+    tether_length_m : [m] between the two bodies; not needed with lengths.
+    frequency_hz : a first frequency [Hz]; found by default, where a tether of that length may skip.
+    end_mass_kg, tether_kg_m : of the lighter end, and of a metre of tether: both narrow the search down.
+    lengths : of a tether that is paid out or taken in, as `read_tether_lengths` gives them: followed throughout.
+    swing : frequency [Hz] of the satellite's swing on its tether, or "found"; taken off the deflection.
     method : "harmonic", "kalman" or "bandpass" (TP-3123's filters and rules).      model : of the field, by name or a FieldModel.
     sensor_axes : the magnetometer's axes along body x, y, z, as "x,-y,-z", or a matrix (3, 3), v_b = S v_s.
     attitude_deg : roll, pitch, yaw [deg] of the body against the orbital axes (x along the velocity, y against the normal,
@@ -63,9 +73,10 @@ def estimate_skiprope(
     Source: docs/theory/skiprope.md. Valid for tilts of a few degrees.
     """
     settings = SkipropeSettings(
-        tether_length_m=tether_length_m, frequency_hz=frequency_hz, method=method, model=model,
+        tether_length_m=length_of(tether_length_m, lengths), frequency_hz=frequency_hz, method=method, model=model,
         mounting=Mounting(sensor_axes=sensor_axes, attitude_deg=attitude_deg, tether=tether), plane=plane,
-        calibration=calibration, use_yaw=use_yaw, steady_s=steady_s, reeled=reeled,
+        calibration=calibration, use_yaw=use_yaw, steady_s=steady_s, reeled=reeled, lengths=lengths, end_mass_kg=end_mass_kg,
+        tether_kg_m=tether_kg_m, swing=swing,
     )  # fmt: skip
     rows = rows_of(telemetry)
     if settings.averages and comes_fast(rows.time_utc):
@@ -73,6 +84,15 @@ def estimate_skiprope(
     solved = solve_rows(rows, orbit, settings, progress)
     told = {"name": telemetry.name, "sha256": telemetry.sha256, "lines": telemetry.describe()}
     return dataset_of(solved, settings, told)
+
+
+def length_of(tether_length_m: float | None, lengths: TetherLengths | None) -> float:
+    """[m] as given, or the last of the lengths; InputError for neither."""
+    if tether_length_m is not None:
+        return tether_length_m
+    if lengths is None:
+        raise InputError("the length of the tether is needed: --tether-length-m, or --tether-lengths of one that changes.")
+    return float(lengths.length_m[-1])
 
 
 def rows_of(telemetry: Telemetry) -> Rows:

@@ -15,11 +15,14 @@ from fieldline.errors import InputError, NoEstimateError, nearest
 from fieldline.estimation.calibrate import calibrate_against, columns_for
 from fieldline.estimation.calibration import Calibration
 from fieldline.estimation.reference import Reference, reference_along_orbit
+from fieldline.estimation.skiprope.line_band import line_band
+from fieldline.estimation.skiprope.reeled import estimate_reeled
 from fieldline.estimation.skiprope.rotary import FEWEST_PERIODS, LEAST_TURNING, detect
 from fieldline.estimation.skiprope.signals import ORBITAL_FROM_CONE, SkipropeSignals, skiprope_signals
 from fieldline.estimation.skiprope.solution import SkipropeEstimate
 from fieldline.estimation.skiprope_telemetry.mounting import Mounting
 from fieldline.estimation.skiprope_telemetry.plane import Crossings, Plane, next_crossings, plane_of
+from fieldline.estimation.skiprope_telemetry.tether import TetherLengths, swing_taken_off
 from fieldline.orbit import Orbit, orbit_from_positions
 from fieldline.telemetry import telemetry_of
 from fieldline.telemetry.stream import Rows
@@ -28,6 +31,7 @@ METHODS = ("bandpass", "harmonic", "kalman")
 LENGTH_M = (1.0, 1e6)
 STEADY_S = (1.0, 1e6)
 FREQUENCY_HZ = (1e-5, 10.0)
+MASS_KG, LINEAR_KG_M = (1e-3, 1e7), (1e-8, 1e2)
 FASTEST_AVERAGED_HZ = 0.06  # a quicker cone keeps all of its samples
 FEWEST = 30
 BELOW_HZ = (0.0009, 0.0022)
@@ -41,7 +45,9 @@ LARGEST_SHARE = 0.3  # of the field's size
 class SkipropeSettings:
     """What an estimate is told. frequency_hz None: found from the spectrum. calibration: "none", "auto", "bias", "full",
     or a Calibration. use_yaw: whether a measured yaw is used. steady_s: over which the ellipse is steady.
-    reeled: the tether is paid out or taken in, and its frequency runs (kalman).
+    reeled: the tether is paid out or taken in, and its frequency runs (kalman); lengths: it is, and the reel tells.
+    end_mass_kg, tether_kg_m: of the lighter end and of a metre of tether, from which follows where its skiprope can be.
+    swing: how the satellite swings on its tether, [Hz], or "found" in the spectrum; None leaves deflections as they are.
     """
 
     tether_length_m: float
@@ -54,6 +60,10 @@ class SkipropeSettings:
     use_yaw: bool = True
     steady_s: float | None = None
     reeled: bool = False
+    lengths: TetherLengths | None = None
+    end_mass_kg: float | None = None
+    tether_kg_m: float | None = None
+    swing: float | str | None = None
 
     def __post_init__(self):
         _check_number("tether_length_m", self.tether_length_m, LENGTH_M, "m")
@@ -67,7 +77,21 @@ class SkipropeSettings:
             raise InputError(f"calibration must be none, auto, bias, full or a Calibration; got {self.calibration!r}.")
         if self.reeled and self.method != "kalman":
             raise InputError(f'reeled, a frequency that runs, needs method "kalman"; got "{self.method}".')
+        if self.reeled and self.lengths is not None:
+            raise InputError("reeled lets the frequency run where the length is not known; with lengths leave it out.")
+        if (self.end_mass_kg is None) != (self.tether_kg_m is None):
+            raise InputError("end_mass_kg and tether_kg_m are of use together: give both, or neither.")
+        if self.end_mass_kg is not None:
+            _check_number("end_mass_kg", self.end_mass_kg, MASS_KG, "kg")
+            _check_number("tether_kg_m", self.tether_kg_m, LINEAR_KG_M, "kg/m")
+        if self.swing is not None and self.swing != "found":
+            _check_number("swing", self.swing, FREQUENCY_HZ, 'Hz, or "found"')
         plane_of(self.plane)
+
+    @property
+    def ratio_m(self) -> float | None:
+        """[m] end mass over mass per length."""
+        return None if self.end_mass_kg is None or self.tether_kg_m is None else self.end_mass_kg / self.tether_kg_m
 
     @property
     def averages(self) -> bool:
@@ -87,6 +111,10 @@ class SkipropeSettings:
             "use_yaw": self.use_yaw,
             "reeled": self.reeled,
             "steady_s": None if self.steady_s is None else float(self.steady_s),
+            "lengths": None if self.lengths is None else self.lengths.described(),
+            "end_mass_kg": None if self.end_mass_kg is None else float(self.end_mass_kg),
+            "tether_kg_m": None if self.tether_kg_m is None else float(self.tether_kg_m),
+            "swing": self.swing if self.swing is None or isinstance(self.swing, str) else float(self.swing),
             **self.mounting.described(),
         }
 
@@ -118,8 +146,6 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
 
     Errors: InputError for input that cannot be used; NoEstimateError where there is too little of it.
     """
-    from fieldline.estimation.skiprope.estimate import estimate_skiprope
-
     report = report or (lambda stage, done, total, words="": None)
     good = np.isfinite(rows.field_s).all(axis=1)
     if good.sum() < FEWEST:
@@ -140,15 +166,8 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
     signals = skiprope_signals(seconds, measured, known)
     remarks += _judge_length(signals.span_s, settings.frequency_hz)
     report(settings.method, 0, 1, "")
-    estimate = estimate_skiprope(
-        signals,
-        tether_length_m=float(settings.tether_length_m),
-        frequency_hz=settings.frequency_hz,
-        method=settings.method,
-        yaw_rad=np.zeros(len(signals.seconds)) if yaw_used else None,  # the measured one is taken out already
-        memory_s=settings.steady_s,
-        reeled=settings.reeled,
-    )
+    estimate, words = swing_taken_off(_estimated(signals, rows, reference, settings, yaw_used), settings.swing)
+    remarks += words
     if settings.frequency_hz is None and not estimate.detected:
         remarks += _below_the_band(signals)
     plane = plane_of(settings.plane)
@@ -156,6 +175,32 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
     report(settings.method, 1, 1, f"{len(estimate.seconds)} rows" if estimate.detected else "nothing found")
     turned = _half_turned(estimate, settings.mounting)
     return Solved(rows, reference, calibration, signals, estimate, plane, crossings, yaw_used, remarks, turned)
+
+
+def _estimated(signals: SkipropeSignals, rows: Rows, reference: Reference, settings: SkipropeSettings, yaw_used: bool):
+    """The estimate of a tether of one length, or of lengths."""
+    from fieldline.estimation.skiprope.estimate import estimate_skiprope
+
+    motion = _mean_motion(reference)
+    given = {
+        "frequency_hz": settings.frequency_hz,
+        "method": settings.method,
+        "yaw_rad": 0.0 if yaw_used else None,  # the measured one is taken out already
+        "memory_s": settings.steady_s,
+    }
+    if settings.lengths is not None:
+        ns = (1e9 * signals.seconds).astype(np.int64).astype("timedelta64[ns]")
+        length = settings.lengths.at(rows.time_utc[0] + ns)
+        return estimate_reeled(signals, length, mean_motion_rad_s=motion, ratio_m=settings.ratio_m, **given)
+    length_m = float(settings.tether_length_m)
+    band = line_band(length_m, motion, settings.ratio_m)
+    return estimate_skiprope(signals, tether_length_m=length_m, band_hz=band, reeled=settings.reeled, **given)
+
+
+def _mean_motion(reference: Reference) -> float:
+    """[rad/s] at which the satellite goes round, in the median."""
+    r, v = reference.position_i, reference.velocity_i
+    return float(np.nanmedian(np.linalg.norm(np.cross(r, v), axis=1) / np.sum(r * r, axis=1)))
 
 
 def _half_turned(estimate: SkipropeEstimate, mounting: Mounting) -> HalfTurned:

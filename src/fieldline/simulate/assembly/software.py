@@ -15,6 +15,7 @@ from fieldline.simulate.estimators import ESTIMATORS
 from fieldline.simulate.loop import records as loop
 from fieldline.simulate.loop.flight_software import KNOWLEDGE
 from fieldline.simulate.loop.functions import LAW, no_law
+from fieldline.simulate.skiprope_laws import HEARING_LAWS
 
 USUAL_MEMORY = 64  # numbers, where a law of the user's own does not say
 
@@ -31,6 +32,7 @@ class Task:
     commands: tuple[str, ...]
     memory: np.ndarray
     params: np.ndarray
+    heard: int | None = None  # the body whose magnetometer a law that listens hears
     reference: bool = True  # whether it is given the on-board model's field
     settings: dict = field(default_factory=dict)
 
@@ -70,6 +72,8 @@ def _task(scenario, k: int, design) -> Task:
             memory=np.zeros(0),
             params=np.zeros(0),
         )
+    if record.law in HEARING_LAWS:
+        return _hearing(scenario, record, body, design, where)
     known = LAWS[record.law]
     params = np.array(known.pack(record.parameters, design(body, 1.0 / record.rate_hz)), dtype=float)
     return Task(
@@ -82,6 +86,30 @@ def _task(scenario, k: int, design) -> Task:
         memory=np.zeros(known.memory),
         params=params,
         reference=known.reference,
+    )
+
+
+def _hearing(scenario, record, body: int, design, where: str) -> Task:
+    """A law in plain Python that hears a magnetometer: the own body's, or that at the other end of its first line."""
+    known = HEARING_LAWS[record.law]
+    name = scenario.body[body].name
+    ends = [(line.from_body, line.to_body) for line in scenario.line if name in (line.from_body, line.to_body)]
+    if not ends:
+        raise InputError(f'{where}: the law "{record.law}" needs a line on "{name}".')
+    far = next(one for one in ends[0] if one != name)
+    heard = next((one for one in (name, far) if scenario.body[scenario.index_of(one)].magnetometer is not None), None)
+    if heard is None:
+        raise InputError(f'{where}: the law "{record.law}" hears a magnetometer; neither "{name}" nor "{far}" has one.')
+    return Task(
+        record=record,
+        name=record.name or record.law,
+        body=body,
+        law=known.make(record.parameters, design(body, 1.0 / record.rate_hz)),
+        plain=True,
+        commands=known.commands,
+        memory=np.zeros(0),
+        params=np.zeros(0),
+        heard=scenario.index_of(heard),
     )
 
 
@@ -138,6 +166,8 @@ def place(software: list[Task], tasks: loop.Tasks, boards: loop.Boards, host: Ho
         if task.plain:
             row = measurement_row(boards, task.body)
             law, memory, params = task.law, task.memory, task.params
+            if task.heard is not None:
+                law.sensed = measurement_row(boards, task.heard)
             host.add(i, lambda t, law=law, row=row, memory=memory, params=params: law(t, row, memory, params))
             continue
         tasks.slot[i] = slots.add(task.law)  # one a task: two tasks of one law remember different things

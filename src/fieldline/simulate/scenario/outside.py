@@ -150,8 +150,9 @@ def known_laws() -> dict[str, Any]:
     """Laws and estimators of the library by name."""
     from fieldline.control import LAWS
     from fieldline.simulate.estimators import ESTIMATORS
+    from fieldline.simulate.skiprope_laws import HEARING_LAWS
 
-    return {**LAWS, **ESTIMATORS}
+    return {**LAWS, **ESTIMATORS, **HEARING_LAWS}
 
 
 def _laws(scenario) -> Iterator[tuple[str, str]]:
