@@ -110,7 +110,7 @@ class SkipropeYaw(_Hearing):
 
     def _decide(self, t: float, own: Measurement) -> None:
         found = self.heard(t, own)
-        if found is None:
+        if found is None or found.now.sense == 0:
             return
         off = np.radians(self.values["azimuth_off_deg"])
         size = (1.0 + self.values["deflection_off"]) * found.now.deflection_m

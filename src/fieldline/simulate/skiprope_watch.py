@@ -37,6 +37,7 @@ class SkipropeWatch:
         self.half_turned = tether == "up"  # the tether's middle stands half a turn from the lean of a satellite above it
         self.swing_hz = swing_hz
         self.rows: list[tuple] = []
+        self.found_hz: float | None = None  # by the first trusted estimate: what is left of a skiprope is looked for there
 
     def clear(self) -> None:
         """Forget: what was heard is of another motion."""
@@ -63,14 +64,15 @@ class SkipropeWatch:
             found = estimate_skiprope(
                 skiprope_signals(table[:, 0], table[:, 1:4], table[:, 4:7]),
                 tether_length_m=length_m,
+                frequency_hz=self.found_hz,
                 band_hz=line_band(length_m, float(motion)),
                 memory_s=0.3 * MEMORY_S,
             )
         except NoEstimateError:
             return None
-        if not found.detected or not found.trusted[-1] or found.sense[-1] == 0:
+        if not found.detected or not found.trusted[-1]:
             return None
-        hz = float(found.frequency_hz[-1])
+        hz = self.found_hz = float(found.frequency_hz[-1])
         less = 1.0 - (hz / self.swing_hz) ** 2 if self.swing_hz > 2.0 * hz else 1.0
         sign = -1.0 if self.half_turned else 1.0
         now = SkipropeNow(

@@ -45,6 +45,7 @@ SLOW_BINS = 50  # over 1 / SLOW_HZ: enough to fit what is slow
 LEAST_DEGREE = 3
 LEAST_TURNING = 0.2  # of a line that turns
 LEAST_SHARE = 0.1  # of the strongest turning line's amplitude: a weaker one is not taken for the cone
+HIGHER_MODE = 0.25  # of a slower line that swings: a weaker one that turns above it is a mode of more half waves
 LEAST_RAD = np.radians(0.06)  # of a line of few periods, or below the usual band: field errors reach 0.05
 FEW_PERIODS = 6.0
 SIDE = 6  # widths on either side of a line that the noise is taken from
@@ -93,7 +94,8 @@ def detect(signals: SkipropeSignals, *, band_hz=BAND_HZ, highest_hz: float | Non
     """Equations (1) to (3): all lines up to `highest_hz`, and the one in `band_hz` that is the cone.
 
     That is the slowest line in the band that turns and has a tenth of the strongest's amplitude or more; where none turns,
-    the strongest. highest_hz : five times the band's upper end by default, or half the sampling rate.
+    or a slower one swings with four times its amplitude, that one: a skiprope damped in one direction swings in a plane.
+    highest_hz : five times the band's upper end by default, or half the sampling rate.
 
     Errors: NoEstimateError where the record holds less than two and a half periods of the band's upper end.
     """
@@ -238,4 +240,7 @@ def _cone(lines) -> Line | None:
     if not turning:
         return max(lines, key=lambda line: line.amplitude_rad, default=None)
     largest = max(line.amplitude_rad for line in turning)
-    return min((line for line in turning if line.amplitude_rad >= LEAST_SHARE * largest), key=lambda line: line.frequency_hz)
+    cone = min((line for line in turning if line.amplitude_rad >= LEAST_SHARE * largest), key=lambda line: line.frequency_hz)
+    slower = [line for line in lines if line.frequency_hz < cone.frequency_hz]
+    below = max(slower, key=lambda line: line.amplitude_rad, default=cone)
+    return below if cone.amplitude_rad < HIGHER_MODE * below.amplitude_rad else cone
