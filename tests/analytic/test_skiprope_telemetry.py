@@ -20,7 +20,7 @@ DEG = np.pi / 180.0
 
 
 def estimate(record, **more):
-    return fl.estimate_skiprope(record.telemetry, sample_orbit(), tether_length_m=LENGTH_M, **more)
+    return fl.estimate_skiprope(record.telemetry, sample_orbit(), **({"tether_length_m": LENGTH_M} | more))
 
 
 def seconds_of(dataset, name="time"):
@@ -245,10 +245,12 @@ def test_without_a_skiprope_the_answer_is_that_there_is_none(method):
 
 def test_a_skiprope_below_the_band_is_hinted_at_and_found_when_asked_for():
     record = flight(3000, 2.0, skiprope_frequency_hz=0.0016)
-    blind = json.loads(estimate(record).attrs["verdict_json"])
+    blind = json.loads(estimate(record, tether_length_m=2e3).attrs["verdict_json"])
     assert not blind["detected"] and "say --frequency-hz 0.0016" in blind["warnings"][-1]
-    asked = estimate(record, frequency_hz=0.0016)
+    asked = estimate(record, tether_length_m=2e3, frequency_hz=0.0016)
     assert np.degrees(asked.amplitude_rad.values[-1]) == pytest.approx(0.6, rel=0.1)
+    long = estimate(record, tether_length_m=20e3)  # which can be as slow as that
+    assert long.frequency_hz.values[-1] == pytest.approx(0.0016, rel=0.02)
 
 
 def test_planes_by_word_and_number():

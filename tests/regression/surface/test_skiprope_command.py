@@ -417,3 +417,33 @@ def test_an_interrupt_keeps_the_state(folder, lines):
     assert running.returncode in (0, 1) and "interrupted." in err and "Traceback" not in err
     assert json.loads((folder / "s.json").read_text())["recent"]["counts"]["rows"] == 699
     assert len(out.splitlines()) >= 3
+
+
+@pytest.mark.kernels
+def test_a_length_that_changes_and_a_swing(folder, capsys):
+    """A reel's table: the deflection is that of the length at each row's time; the swing is taken off."""
+    lengths = "time_utc,length_m\n" + "".join(f"{START + np.timedelta64(k, 's')}Z,{20000 - k}\n" for k in (0, 3600))
+    write(folder / "flight.csv", lines_of(flight().telemetry))
+    (folder / "reel.csv").write_text(lengths)
+    asked = ["skiprope", "flight.csv", "--orbit", ELEMENTS, "--tether-lengths", "reel.csv", "--swing-hz", "found", "--out", "a"]
+    assert main(asked) == 0
+    out, _ = capsys.readouterr()
+    assert "followed while 20 km of tether became" in out and "taken off the deflection" in out
+    table = pd.read_csv("a.csv")
+    at = (pd.to_datetime(table.time_utc).dt.tz_localize(None).to_numpy() - START) / np.timedelta64(1, "s")
+    plain = np.radians(table.amplitude_deg) * (20000.0 - at) / np.pi
+    assert (table.deflection_m / plain).to_numpy() == pytest.approx(1.0 - (0.0049 / 0.03125) ** 2, abs=0.004)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ([], "--tether-lengths"),
+        (["--tether-length-m", "20000", "--swing-hz", "quick"], "--swing-hz"),
+        (["--tether-length-m", "20000", "--end-mass-kg", "500"], "give both"),
+        (["--tether-lengths", "none.csv"], "no such file"),
+    ],
+)
+def test_what_is_not_known_of_the_tether(folder, capsys, more, words):
+    assert main(["skiprope", SAMPLE, "--orbit", ELEMENTS, *more]) == 2
+    assert words in capsys.readouterr().err

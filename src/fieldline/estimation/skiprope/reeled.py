@@ -35,6 +35,7 @@ def estimate_reeled(
     ratio_m: float | None = None,
     frequency_hz: float | None = None,
     memory_s: float | None = None,
+    false_alarm: float = 0.01,
     **given,
 ) -> SkipropeEstimate:
     """The skiprope of a tether of lengths length_m (n,) [m] at the signals' times; `given` as for `estimate_skiprope`.
@@ -60,9 +61,16 @@ def estimate_reeled(
         at_middle = float(np.interp(middle, times, length))
         first = None if frequency_hz is None else frequency_hz * there / rate[0]
         band = line_band(at_middle, mean_motion_rad_s, ratio_m)
+        share = -np.expm1(np.log1p(-false_alarm) / len(starts))  # of a record of many pieces
         try:
             one = estimate_skiprope(
-                part, tether_length_m=1.0, frequency_hz=first, memory_s=memory_s or STEADY_S, band_hz=band, **given
+                part,
+                false_alarm=share,
+                tether_length_m=1.0,
+                frequency_hz=first,
+                memory_s=memory_s or STEADY_S,
+                band_hz=band,
+                **given,
             )
         except NoEstimateError as error:
             refused = error

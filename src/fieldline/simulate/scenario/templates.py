@@ -20,6 +20,7 @@ TEMPLATES = {
     "microsat-pair": "two microsatellites on a thin line of 500 m, swinging",
     "deploy": "a tether paid out to 20 km and taken in again by its tension",
     "tethered": "a satellite on a tether, steadied by moving the point at which it hangs",
+    "skiprope": "a tether that skips, found by the satellite's magnetometer, taken out by a yaw",
     "tumble": "a free tumble with a magnetometer, for telemetry",
     "tss1r": "TSS-1R on station: 20 km of conducting tether, its current, heat and swing",
     "deorbit-tape": "a bare electrodynamic tape of 500 m brings a satellite down",
