@@ -2,8 +2,9 @@
 
     python benchmarks/skiprope_accuracy.py scenarios|floor|silence|sweeps [--count N] [--first SEED]
 
-Settings of all methods are the library's defaults, fixed on flights 9000 to 9019, silence on 9100 to 9199 (and the Kalman filter's
-equations on two of the 5000s that it lost) before any of the flights from 12000 on, which are scored here, was looked at. Each study prints a table of Markdown.
+Settings of all methods are the library's defaults, fixed on flights 9000 to 9019, silence on 9100 to 9199 (and the Kalman
+filter's equations on two of the 5000s that it lost) before any of the flights from 12000 on, which are scored here, was
+looked at. Each study prints a table of Markdown.
 """
 
 from __future__ import annotations

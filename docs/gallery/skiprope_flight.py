@@ -178,11 +178,10 @@ def tracking() -> dict:
     for name, given in {"2.4 km": SHORT, "20 km": LONG, "2.4 km, satellite rotating": ROTATING}.items():
         run, place = fly(scenario(**given))
         sent = telemetry(run, yaw=given is ROTATING)
-        first = 0.0019 if given is LONG else None
         for method in METHODS:
             steady = 1200.0 if given is LONG else None  # its circle becomes an ellipse within an orbit
             length = given["length_m"]
-            estimate = fl.estimate_skiprope(sent, tether_length_m=length, method=method, frequency_hz=first, steady_s=steady)
+            estimate = fl.estimate_skiprope(sent, tether_length_m=length, method=method, steady_s=steady)
             table[f"{name}, {method}"] = errors(estimate, run, place) | {
                 "swing_mhz": 1e3 * swing_hz(run),
                 "with_swing": errors(estimate, run, place, swing_gain(estimate, swing_hz(run))),

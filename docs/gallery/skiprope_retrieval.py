@@ -1,11 +1,6 @@
 """A tether taken in from 20 km to 2.4 km while it skips, followed throughout: `python docs/gallery/skiprope_retrieval.py`.
 
-The reel reports the length that is out. With it the time is stretched so that the skiprope keeps its frequency,
-
-    dtau = sqrt((m + mu L / 2) / L) dt,   scaled to one at the end,                                            (1)
-
-after the tension 3 n^2 L (m + mu L / 2) in the middle of a line of length L and mu under a satellite of mass m; and the last
-WINDOW_S of it are estimated every STEP_S, as the live mode does.
+The reel reports the length that is out; the tool takes it as `--tether-lengths` and follows (`estimation.skiprope.reeled`).
 """
 
 from __future__ import annotations
@@ -13,18 +8,13 @@ from __future__ import annotations
 import numpy as np
 from skiprope_flight import fly, save, seconds_of, telemetry
 
-from fieldline.errors import NoEstimateError
-from fieldline.estimation.reference import reference_along_orbit
-from fieldline.estimation.skiprope.estimate import estimate_skiprope
-from fieldline.estimation.skiprope.signals import ORBITAL_FROM_CONE, skiprope_signals
-from fieldline.estimation.skiprope_telemetry import Mounting
-from fieldline.frames.orbital import dcm_oi
-from fieldline.orbit import orbit_from_positions
+import fieldline as fl
+from fieldline.estimation.skiprope_telemetry import TetherLengths
 from fieldline.report.series import legend, line
 from fieldline.report.theme import AXIS_COLOURS, GREY, INK, WARM, label_outer, panels, themed
 
 MASS_KG, LINEAR_KG_M = 520.0, 8.35e-3
-WINDOW_S, STEP_S, STEADY_S = 2500.0, 100.0, 800.0
+LEAST_HZ = 1e-3
 SCENARIO = """
 name = "retrieval"
 time = { start_utc = 2026-03-01T00:00:00Z, duration_s = 21000.0, output_step_s = 5.0 }
@@ -75,47 +65,20 @@ in_plane_damping = 0.7
 """
 
 
-def stretched(seconds, length_m) -> np.ndarray:
-    """Equation (1) at times (n,) [s] with lengths (n,) [m]."""
-    rate = np.sqrt((MASS_KG + 0.5 * LINEAR_KG_M * length_m) / length_m)
-    steps = 0.5 * (rate[1:] + rate[:-1]) / rate[-1] * np.diff(seconds)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def follow(sent, seconds, length_m, method: str) -> np.ndarray:
-    """Rows of time [s], the middle's U and V over the length, frequency [Hz] then, whether trusted."""
-    orbit = orbit_from_positions(sent.time_utc, sent.position_e)
-    reference = reference_along_orbit(sent.time_utc, orbit)
-    known = np.einsum("nij,nj->ni", dcm_oi(reference.position_i, reference.velocity_i), reference.field_i) @ ORBITAL_FROM_CONE
-    measured = Mounting().field_c(sent.field_s)
-    tau = stretched(sent.seconds, np.interp(sent.seconds, seconds, length_m))
-    rows = []
-    for stop in np.arange(WINDOW_S, sent.seconds[-1], STEP_S):
-        part = (sent.seconds >= stop - WINDOW_S) & (sent.seconds < stop)
-        signals = skiprope_signals(tau[part], measured[part], known[part])
-        try:
-            found = estimate_skiprope(signals, tether_length_m=1.0, method=method, memory_s=STEADY_S)
-        except NoEstimateError:
-            continue
-        if found.detected:
-            at = np.interp(found.seconds[-1], tau, sent.seconds)
-            pace = np.interp(at, sent.seconds, np.gradient(tau, sent.seconds))
-            rows.append([at, *found.position_m[-1], found.frequency_hz[-1] * pace, found.trusted[-1]])
-    return np.array(rows)
-
-
-def follow_reeled(sent) -> np.ndarray:
-    """The same rows by the Kalman filter that lets the frequency run, told nothing of the reel, over the whole record."""
-    import fieldline as fl
-
-    found = fl.estimate_skiprope(sent, tether_length_m=1.0, method="kalman", reeled=True)
+def follow(sent, lengths: TetherLengths, method: str) -> np.ndarray:
+    """Rows of time [s], the middle's U and V [m], frequency [Hz], whether trusted; "reeled" is told nothing of the reel."""
+    if method == "reeled":
+        found = fl.estimate_skiprope(sent, tether_length_m=1.0, method="kalman", reeled=True)
+    else:
+        found = fl.estimate_skiprope(sent, lengths=lengths, end_mass_kg=MASS_KG, tether_kg_m=LINEAR_KG_M, method=method)
     at = (found.time.values - sent.time_utc[0]).astype(np.int64) * 1e-9
-    return np.column_stack([at, found.position_m.values, found.frequency_hz.values, found.trusted.values])
+    scale = lengths.at(found.time.values)[:, None] if method == "reeled" else 1.0
+    return np.column_stack([at, scale * found.position_m.values, found.frequency_hz.values, found.trusted.values])
 
 
 def about_its_mean(place, seconds, frequency_hz) -> np.ndarray:
     """Places (n, 2) less their mean over the turn about each: taking in bows the line ahead, and that is no skiprope."""
-    width = np.interp(seconds, *frequency_hz) ** -1.0
+    width = np.maximum(np.interp(seconds, *frequency_hz), LEAST_HZ) ** -1.0
     first, last = (np.searchsorted(seconds, seconds + sign * 0.5 * width) for sign in (-1.0, 1.0))
     total = np.concatenate([np.zeros((1, 2)), np.cumsum(place, axis=0)])
     return place - (total[last] - total[first]) / np.maximum(last - first, 1)[:, None]
@@ -128,9 +91,9 @@ def main() -> None:
     sent = telemetry(run)
     drawn = {}
     for method in ("harmonic", "kalman", "reeled"):
-        rows = follow_reeled(sent) if method == "reeled" else follow(sent, seconds, length, method)
+        rows = follow(sent, TetherLengths(run.time.values, length), method)
         swing = about_its_mean(place, seconds, (rows[:, 0], rows[:, 3]))
-        found = rows[:, 1:3] * np.interp(rows[:, 0], seconds, length)[:, None]
+        found = rows[:, 1:3]
         true = np.stack([np.interp(rows[:, 0], seconds, column) for column in swing.T], axis=-1)
         drawn[method] = (rows, found)
         for start in range(0, 21000, 3000):

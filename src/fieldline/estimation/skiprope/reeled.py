@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from fieldline.errors import NoEstimateError
-from fieldline.estimation.skiprope.estimate import estimate_skiprope
+from fieldline.estimation.skiprope.estimate import SURE, estimate_skiprope
 from fieldline.estimation.skiprope.line_band import line_band, line_frequency
 from fieldline.estimation.skiprope.signals import SkipropeSignals
 from fieldline.estimation.skiprope.solution import SkipropeEstimate
@@ -95,6 +95,8 @@ def _back(one: SkipropeEstimate, start: float, starts, columns) -> SkipropeEstim
         at < (start + edge + STEP_S if start < starts[-1] else np.inf)
     )
     pace, length = np.interp(at, times, pace), np.interp(at, times, length)
+    if one.method == "harmonic" and start > starts[0] and one.trusted.any():  # windows on both sides of each row kept
+        one = replace(one, trusted=one.amplitude_std_rad < SURE * one.amplitude_rad)
     rows = {name: getattr(one, name)[kept] for name in ROWS}
     pace, length = pace[kept], length[kept]
     rows["frequency_hz"], rows["frequency_std_hz"] = rows["frequency_hz"] * pace, rows["frequency_std_hz"] * pace
