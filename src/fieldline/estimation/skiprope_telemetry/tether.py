@@ -73,7 +73,7 @@ def read_tether_lengths(path) -> TetherLengths:
             f'"{file.name}" needs a column time_utc and one of {", ".join(COLUMNS)}; it has {shown(", ".join(names), 200)}.'
         )
     times = pd.to_datetime(table[names["time_utc"]], utc=True, errors="coerce", format="ISO8601")
-    values = pd.to_numeric(table[names[lengths[0]]], errors="coerce").to_numpy(dtype=float) * COLUMNS[lengths[0]]
+    values = np.asarray(pd.to_numeric(table[names[lengths[0]]], errors="coerce"), dtype=float) * COLUMNS[lengths[0]]
     good = times.notna().to_numpy() & np.isfinite(values)
     if good.sum() < 2:
         raise InputError(f'"{file.name}": {int(good.sum())} rows hold a time (UTC, ISO 8601) and a length; two are needed.')
