@@ -70,12 +70,17 @@ def flown(way: str, *, azimuth: float = 0.0, share: float = 0.0, most: float = 0
     return seconds_of(run), np.hypot(*place.T)
 
 
+def over_a_period(at, size) -> np.ndarray:
+    """RMS over 200 s, about a period, from each time on."""
+    period = round(200.0 / (at[1] - at[0]))
+    return np.sqrt(np.convolve(size**2, np.ones(period) / period, mode="valid"))
+
+
 def result(at, size) -> dict:
     """Before, after [m], and the time [s] from when it first falls to when it stays below a tenth of what was there."""
     before = float(np.sqrt(np.mean(size[at < 1000.0] ** 2)))
     after = float(np.sqrt(np.mean(size[at > at[-1] - 600.0] ** 2)))
-    period = round(200.0 / (at[1] - at[0]))
-    smooth = np.sqrt(np.convolve(size**2, np.ones(period) / period, mode="valid"))
+    smooth = over_a_period(at, size)
     late = np.flatnonzero(smooth > SUCCESS * before)
     first = np.flatnonzero(smooth < 0.95 * before)
     done = late[-1] + 1 if len(late) else 0
@@ -149,10 +154,12 @@ def draw(kept: dict, left: dict) -> None:
             shown = ("12 m", "6 m", "3 m", "6 m, azimuth 40 deg wrong")
             for name, colour in zip(shown, (AXIS_COLOURS[0], AXIS_COLOURS[2], GREY, WARM), strict=True):
                 at, size = kept[name, way]
-                line(one, 1e-3 * at, size, colour, name)
-            one.set(xlabel="time [1000 s]", ylabel="radius of the middle [m]", ylim=(0.0, 13.0), xlim=(0.0, 1e-3 * at[-1]))
-            one.set_title(f"by {way}", loc="left")
-        legend(axes[0, 0])
+                smooth = over_a_period(at, size)
+                line(one, 1e-3 * at[: len(smooth)], smooth, colour, name)
+            one.set(
+                xlabel="time [1000 s]", ylabel=f"by {way}: radius, RMS of a turn [m]", ylim=(0.0, 13.0), xlim=(0.0, 1e-3 * at[-1])
+            )
+        legend(axes[0, 1])
         save(figure, "skiprope_damping")
         figure, axes = panels(1, 1, height_in=2.8)
         for (way, rows), colour in zip(left.items(), (AXIS_COLOURS[0], WARM), strict=True):
