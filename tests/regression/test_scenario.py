@@ -20,6 +20,7 @@ from fieldline.simulate.estimators import ESTIMATORS
 from fieldline.simulate.scenario import Body, OrbitStart, Scenario, Span
 from fieldline.simulate.scenario.schema import json_schema, markdown
 from fieldline.simulate.scenario.templates import TEMPLATES, template
+from fieldline.simulate.skiprope_laws import HEARING_LAWS
 from fieldline.vehicle import Magnetorquer, Vehicle, Wheel
 
 ROOT = Path(__file__).parents[2]
@@ -240,7 +241,7 @@ def test_templates_are_the_files():
 
 def test_laws_of_templates_are_of_the_library():
     laws = {task.law for name in TEMPLATES for task in Scenario.from_toml(template(name, name)).software}
-    assert len(laws) >= 7 and laws <= {*LAWS, *ESTIMATORS}
+    assert len(laws) >= 7 and laws <= {*LAWS, *ESTIMATORS, *HEARING_LAWS}
 
 
 CHECKED = [

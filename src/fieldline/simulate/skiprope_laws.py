@@ -21,7 +21,6 @@ from fieldline.errors import InputError
 from fieldline.frames.orbital import dcm_oi
 from fieldline.sensing.measurement import ATTITUDE, ORBIT, RATE, Measurement
 from fieldline.simulate.estimators import Estimator
-from fieldline.simulate.skiprope_watch import SkipropeWatch
 
 _COMMON = {
     "listen_s": Parameter("s", "time over which it listens before it acts, and again after", 2000.0, "positive"),
@@ -55,6 +54,8 @@ class _Hearing:
     hears = True
 
     def __init__(self, values: dict):
+        from fieldline.simulate.skiprope_watch import SkipropeWatch
+
         self.values = values
         self.watch = SkipropeWatch(tether=values["tether"], swing_hz=values["swing_hz"])
         self.sensed: Measurement | None = None
@@ -115,9 +116,7 @@ class SkipropeYaw(_Hearing):
         off = np.radians(self.values["azimuth_off_deg"])
         size = (1.0 + self.values["deflection_off"]) * found.now.deflection_m
         now = found.now._replace(azimuth_rad=found.now.azimuth_rad + off, deflection_m=size)
-        plan = plan_yaw(
-            now, arm_m=self.arm_m, arm_azimuth_rad=self.azimuth + self.turned, not_before_s=t + self.values["lead_s"]
-        )
+        plan = plan_yaw(now, arm_m=self.arm_m, arm_azimuth_rad=self.azimuth + self.turned, not_before_s=t + self.values["lead_s"])
         longest = self.values["turns_max"] * 2.0 * np.pi / abs(plan.rate_rad_s)
         self.plan = plan._replace(stop_s=min(plan.stop_s, plan.start_s + longest))
 
