@@ -54,7 +54,6 @@ def test_appendix_a():
     assert one.attrs["difference_rms"] == pytest.approx(0.243, abs=0.003)
 
 
-@pytest.mark.kernels
 def test_does_the_field_vanish_at_11_and_78_degrees():
     found = lost_field((5.0, 7.5, 8.0, 11.5, 19.0, 20.0, 28.5, 59.0, 59.5, 78.5))
     plane = dict(zip(found["inclination_deg"].values, found["in_plane_least"].values, strict=True))

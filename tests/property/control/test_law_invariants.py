@@ -14,6 +14,8 @@ from law_tests import CONTEXT, PACKED, called, known_measurement, numbers_of
 pytestmark = pytest.mark.kernels
 component = st.floats(-1.0, 1.0).filter(lambda x: x == 0.0 or abs(x) > 1e-6)
 vectors = st.tuples(component, component, component).filter(lambda v: np.linalg.norm(v) > 0.05)
+# in plain Python a plan takes minutes; its kernels are called so by the tests of the horizon
+NAMES = [name for name in sorted(LAWS) if not (config.DISABLE_JIT and name == "tracking-predictive")]
 DIPOLE_LAWS = [name for name, law in LAWS.items() if "dipole" in law.commands]
 quick = settings(max_examples=4 if config.DISABLE_JIT else 40, deadline=None)  # plain Python takes long over a regulator
 
@@ -24,7 +26,7 @@ def across(moment, field):
     return abs(torque @ field) <= 1e-12 * np.linalg.norm(moment) * np.linalg.norm(field) ** 2
 
 
-@pytest.mark.parametrize("name", sorted(LAWS))
+@pytest.mark.parametrize("name", NAMES)
 @given(field=vectors, omega=vectors, turn=vectors)
 @quick
 def test_commands_are_finite_and_of_their_length_and_torques_across_the_field(name, field, omega, turn):
@@ -39,7 +41,7 @@ def test_commands_are_finite_and_of_their_length_and_torques_across_the_field(na
             assert across(command[:3], measurement.field_b)
 
 
-@pytest.mark.parametrize("name", sorted(LAWS))
+@pytest.mark.parametrize("name", NAMES)
 @given(data=st.data())
 @quick
 def test_no_reading_however_broken_makes_a_command_that_is_not_finite(name, data):
@@ -77,7 +79,7 @@ def test_dumping_never_adds_momentum(field, momentum, gain):
     assert abs(torque @ field) <= 1e-12 * gain * np.linalg.norm(momentum) * np.linalg.norm(field)
 
 
-@pytest.mark.parametrize("name", sorted(LAWS))
+@pytest.mark.parametrize("name", NAMES)
 def test_a_law_is_a_pure_function(name):
     measurement = known_measurement((2e-5, 1e-5, -1e-5), (0.01, -0.02, 0.03), (0.1, 0.2, -0.1, 0.9))
     before, params = [np.copy(m) for m in measurement], PACKED[name].copy()

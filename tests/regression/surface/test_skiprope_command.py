@@ -230,7 +230,6 @@ def live(capsys, monkeypatch, lines, *options, ends=True):
     return code, out.splitlines(), err
 
 
-@pytest.mark.kernels
 @pytest.mark.parametrize("method", METHODS)
 def test_live_says_what_a_file_says(method):
     """Every line is the last row of an estimate of the rows before it, within the memory, however the stream was cut."""
