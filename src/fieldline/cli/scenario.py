@@ -43,7 +43,9 @@ def new(
     if exists(path, "the file"):
         raise InputError(f'"{path}" exists already, and is left as it is. Choose another name, or --out.')
     write_text_whole(path, template_text(template, last))
-    print(f"wrote {path}")
+    print(f"wrote {path}, from the template {template}")
+    if last in TEMPLATES and last != template:
+        print(f"A template is called {last}, too: fieldline scenario new NAME --template {last}")
     return 0
 
 

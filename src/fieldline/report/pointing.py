@@ -43,9 +43,9 @@ def pointing_of(record: RunRecord, b: int) -> Pointing | None:
 
 def _by_law(record: RunRecord, b: int, law: str, given: dict) -> Pointing | None:
     """The target of a law of the library."""
-    from fieldline.control import LAWS
+    from fieldline.simulate.scenario.outside import known_laws
 
-    known = LAWS[law].parameters
+    known = known_laws()[law].parameters
     if "target_i" in known and "target_i" in given:
         return _line_error(record, b, np.asarray(given["target_i"], dtype=float))
     if "target" not in known:
