@@ -116,6 +116,7 @@ def page() -> str:
             filter_chapter,
             skiprope_chapter,
             plant_chapter,
+            line_chapter,
             tracking_chapter,
             scaling_chapter,
         )
