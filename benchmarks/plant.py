@@ -23,7 +23,7 @@ from measure import best_of_each, timed, wall
 from satellite import FLAGS, constants, plant_in_c, scenario
 
 AGREE = 1e-9  # relative: the same arithmetic but for rounding
-STEPS = 1000  # of a flight in one timed call: coming from Python costs it 0.3 ms
+STEPS = 5000  # of a flight in one timed call: coming from Python costs it 0.4 ms
 FEW = 100  # of the others: the shorter a call, the more of them are not interrupted
 SCALE = np.repeat([7e6, 7.5e3, 1.0, 0.06], [3, 3, 4, 3])  # of position, velocity, attitude and rate
 C_LANES = 8
