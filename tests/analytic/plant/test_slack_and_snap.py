@@ -75,6 +75,5 @@ def test_a_stiff_tape_under_little_tension_is_the_same_by_both_methods():
         assert tension.mean() == pytest.approx(0.0102, rel=0.07)
     explicit, finer, other = (run.line_position_i_tape.values for run in runs)
     assert np.abs(fl.line_shape(runs[0]).deflection.values).max() > 15.0
-    print(np.linalg.norm(finer - explicit, axis=-1).max(), np.linalg.norm(other - explicit, axis=-1).max())
     assert np.linalg.norm(finer - explicit, axis=-1).max() < 1e-3
     assert np.linalg.norm(other - explicit, axis=-1).max() < 0.05
