@@ -38,28 +38,28 @@ END_MASS = 10  # numbers of an end mass of equation (3): sum m, S (3), J (xx, yy
 
 
 @inner
-def weight_by_table(r_i, dcm_ei, gravity):
-    """The pull [m/s^2] of a field of higher degree, inertial axes."""
-    return matvec(transpose(dcm_ei), gravity_kernel(matvec(dcm_ei, r_i), gravity))
+def weight_beside_point(r_i, dcm_ei, gravity):
+    """What an Earth of a table of harmonics pulls [m/s^2], or J2 beside the point's, inertial axes.
 
-
-@merged
-def weight_per_mass(r_i, dcm_ei, surroundings):
-    """The Earth's pull [m/s^2], inertial axes; written out for a point and an oblate Earth, whose pole p is all it needs.
-
-    J2 of `fieldline.environment.gravity`, equation (2) there: a = -(G M/r^3) ((1 + f (1 - 5 (r.p)^2/r^2)) r + 2 f (r.p) p).
+    J2 is equation (2) of `fieldline.environment.gravity` about the pole p: -(G M/r^3) f ((1 - 5 (r.p)^2/r^2) r + 2 (r.p) p).
     """
+    if gravity.table.shape[0] > 0:
+        return matvec(transpose(dcm_ei), gravity_kernel(matvec(dcm_ei, r_i), gravity))
+    square, pole = dot(r_i, r_i), (dcm_ei[6], dcm_ei[7], dcm_ei[8])
+    flat, up = 1.5 * gravity.j2 * gravity.radius_m * gravity.radius_m / square, dot(r_i, pole)
+    across = scale(1.0 - 5.0 * up * up / square, r_i)
+    return scale(-gravity.gm * flat / (square * sqrt(square)), axpy(2.0 * up, pole, across))
+
+
+@inner
+def weight_per_mass(r_i, dcm_ei, surroundings):
+    """The Earth's pull [m/s^2], inertial axes."""
     gravity = surroundings.gravity
     if gravity.table.shape[0] > 0:
-        return weight_by_table(r_i, dcm_ei, gravity)
+        return weight_beside_point(r_i, dcm_ei, gravity)
     square = dot(r_i, r_i)
-    inverse = gravity.gm / (square * sqrt(square))
-    if gravity.j2 == 0.0:
-        return scale(-inverse, r_i)
-    pole = (dcm_ei[6], dcm_ei[7], dcm_ei[8])
-    flat, up = 1.5 * gravity.j2 * gravity.radius_m * gravity.radius_m / square, dot(r_i, pole)
-    across = 1.0 + flat * (1.0 - 5.0 * up * up / square)
-    return scale(-inverse, axpy(across, r_i, scale(2.0 * flat * up, pole)))
+    point = scale(-gravity.gm / (square * sqrt(square)), r_i)
+    return point if gravity.j2 == 0.0 else add(point, weight_beside_point(r_i, dcm_ei, gravity))
 
 
 @inner
@@ -167,18 +167,18 @@ def tighten(chord, chord_rate, rest, rest_rate, stiffness, damping):
 
 
 @inner
-def pull_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out):
+def pull_nodes(k, z, ends, row, base, plant, shared, out):
     """Rates of the nodes of line k into `out`, tensions of all its segments into shared.tension.
 
     ends: places and velocities of A's and B's attachments; row, base: where its segments start in `lines`, its nodes in z.
     Returns (force on A's end [N], half segment there [kg], on B's end, half segment, mass that is out [kg]), without weight.
-    This is where a line's time goes: arrays are cut to the line first, so that an index that starts at 0 is known not to be
-    negative.
+    Nodes have the pull of a point Earth; `surround_nodes` adds what else there is. This is where a line's time goes: arrays
+    are cut to the line first, so that an index that starts at 0 is known not to be negative, and the loop calls nothing.
     """
-    lines, surroundings, ambient = plant.lines, plant.surroundings, shared.ambient
+    lines, gravity = plant.lines, plant.surroundings.gravity
     nodes, feed = lines.nodes[k], feeds_at(plant) + 2 * k
     warm = temperatures_at(plant) + lines.warm[k] if lines.warm[k + 1] > lines.warm[k] else -1
-    exposed = lines.exposed[k] != 0
+    gm = gravity.gm if gravity.table.shape[0] == 0 else 0.0
     here, there = z[base : base + 6 * nodes], out[base : base + 6 * nodes]
     rests, linear_mass = lines.rest[row : row + nodes + 1], lines.linear_mass[row : row + nodes + 1]
     stiffness, damping = lines.stiffness[row : row + nodes + 1], lines.damping[row : row + nodes + 1]
@@ -201,19 +201,47 @@ def pull_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out):
         ahead = scale(per_metre, chord)
         next_half = 0.5 * linear_mass[j] * cold
         mass_out += 2.0 * next_half
-        pull = add(behind, ahead)
-        behind = scale(-1.0, ahead)
-        if exposed:
-            push = scale(0.5, segment_load(t, k, row + j, p0, v0, p1, v1, dcm_ei, lines, ambient))
-            pull, behind = add(pull, push), add(behind, push)
         if j == 0:
-            end_a, mass_a = pull, next_half
+            end_a, mass_a = ahead, next_half
         else:
+            square = dot(p0, p0)
             store(there, 6 * j - 6, v0)
-            store(there, 6 * j - 3, axpy(1.0 / (half + next_half), pull, weight_per_mass(p0, dcm_ei, surroundings)))
+            weight = scale(-gm / (square * sqrt(square)), p0)
+            store(there, 6 * j - 3, axpy(1.0 / (half + next_half), sub(ahead, behind), weight))
+        behind = ahead
         half = next_half
         p0, v0 = p1, v1
-    return end_a, mass_a, behind, half, mass_out
+    return end_a, mass_a, scale(-1.0, behind), half, mass_out
+
+
+@inner
+def surround_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out):
+    """Add to the rates of the nodes of line k what `pull_nodes` leaves out: an Earth that is no point, air, current.
+
+    Returns the forces of air and current on A's end and on B's [N], inertial axes.
+    """
+    lines, gravity, ambient = plant.lines, plant.surroundings.gravity, shared.ambient
+    nodes, feed = lines.nodes[k], feeds_at(plant) + 2 * k
+    if gravity.table.shape[0] > 0 or gravity.j2 != 0.0:
+        for j in range(nodes):
+            at = base + 6 * j
+            store(out, at + 3, add(three(out, at + 3), weight_beside_point(three(z, at), dcm_ei, gravity)))
+    if lines.exposed[k] == 0:
+        return NOTHING, NOTHING
+    p0, v0, place_b, speed_b = ends
+    on_a, behind, half = NOTHING, NOTHING, 0.0
+    for j in range(nodes + 1):
+        at = base + 6 * j
+        p1, v1 = (three(z, at), three(z, at + 3)) if j < nodes else (place_b, speed_b)
+        push = scale(0.5, segment_load(t, k, row + j, p0, v0, p1, v1, dcm_ei, lines, ambient))
+        next_half = 0.5 * lines.linear_mass[row + j] * (lines.rest[row + j] if j < nodes else z[feed])
+        if j == 0:
+            on_a = push
+        else:
+            store(out, at - 3, axpy(1.0 / (half + next_half), add(behind, push), three(out, at - 3)))
+        behind, half = push, next_half
+        p0, v0 = p1, v1
+    return on_a, behind
 
 
 @inner
@@ -228,7 +256,9 @@ def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
     nodes, row = lines.nodes[k], lines.first[k] + k
     base, feed = nodes_at(plant) + 6 * lines.first[k], feeds_at(plant) + 2 * k
     ends = (place_a, speed_a, place_b, speed_b)
-    end_a, mass_a, end_b, half, mass_out = pull_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out)
+    end_a, mass_a, end_b, half, mass_out = pull_nodes(k, z, ends, row, base, plant, shared, out)
+    on_a, on_b = surround_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out)
+    end_a, end_b = add(end_a, on_a), add(end_b, on_b)
     if nodes == 0:
         first, first_rate, last, last_rate = place_b, speed_b, place_a, speed_a
     else:
