@@ -1,5 +1,6 @@
 """`fieldline skiprope`: files, exit codes, words, and the live mode, which says what a whole file says."""
 
+import io
 import json
 import os
 import subprocess
@@ -209,7 +210,7 @@ def test_broken_telemetry_ends_in_words(folder, capsys, lines, how):
     assert bool(out) == (how in ("gap", "holes"))  # files only where there is something to see
 
 
-def live(capsys, monkeypatch, lines, *options, ends=True):
+def live(capsys, monkeypatch, lines, *options, ends=True, tether=ASKED):
     """The live mode on a pipe that carries these lines: exit code, rows, words."""
     read, wrote = os.pipe()
     text = "\n".join(lines) + ("\n" if ends else "")
@@ -222,7 +223,7 @@ def live(capsys, monkeypatch, lines, *options, ends=True):
     thread.start()
     with os.fdopen(read) as source:
         monkeypatch.setattr(sys, "stdin", source)
-        code = main(["skiprope", "-", *ASKED, *options])
+        code = main(["skiprope", "-", *tether, *options])
         source.buffer.read()
     thread.join()
     out, err = capsys.readouterr()
@@ -432,6 +433,29 @@ def test_a_length_that_changes_and_a_swing(folder, capsys):
     at = (pd.to_datetime(table.time_utc).dt.tz_localize(None).to_numpy() - START) / np.timedelta64(1, "s")
     plain = np.radians(table.amplitude_deg) * (20000.0 - at) / np.pi
     assert (table.deflection_m / plain).to_numpy() == pytest.approx(1.0 - (0.0049 / 0.03125) ** 2, abs=0.004)
+
+
+@pytest.mark.kernels
+def test_a_length_that_changes_live(folder, capsys, monkeypatch, lines):
+    """The last row of the pipe is the file's; each row's deflection is of the length then; a state of another reel is refused."""
+    reel = "time_utc,length_m\n" + "".join(f"{START + np.timedelta64(k, 's')}Z,{20000 - k}\n" for k in (0, 2400))
+    (folder / "reel.csv").write_text(reel)
+    write(folder / "flight.csv", lines)
+    asked = ["--orbit", ELEMENTS, "--tether-lengths", "reel.csv"]
+    assert main(["skiprope", "flight.csv", *asked, "--out", "a"]) == 0
+    assert "the table of its lengths ends 998 s before the last row" in capsys.readouterr().out
+    kept = ("--every-s", "400", "--state", "s.json")
+    code, rows, err = live(capsys, monkeypatch, lines, *kept, tether=asked)
+    assert err.count("the table of its lengths ends") == 1
+    assert code == 0 and rows[-1] == (folder / "a.csv").read_text().splitlines()[-1]
+    table = pd.read_csv(io.StringIO("\n".join(rows))).dropna(subset="amplitude_deg")
+    at = (pd.to_datetime(table.time_utc).dt.tz_localize(None).to_numpy() - START) / np.timedelta64(1, "s")
+    assert len(table) >= 5 and at.min() < 2400.0 < at.max()
+    expected = np.radians(table.amplitude_deg) * (20000.0 - np.minimum(at, 2400.0)) / np.pi
+    assert table.deflection_m.to_numpy() == pytest.approx(expected.to_numpy(), rel=1e-3)
+    (folder / "reel.csv").write_text(reel.replace("20000", "20500"))
+    code, _, err = live(capsys, monkeypatch, lines, *kept, tether=asked)
+    assert code == 2 and "was made with lengths" in err
 
 
 @pytest.mark.parametrize(

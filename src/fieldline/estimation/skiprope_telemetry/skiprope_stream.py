@@ -66,6 +66,7 @@ class SkipropeStream:
         self.due_ns: int | None = None
         self.lines = 0
         self.status = ""
+        self.told_beyond = False  # that the table of lengths does not reach the rows
         self.latest: Solved | None = None
 
     @property
@@ -119,6 +120,10 @@ class SkipropeStream:
         except NoEstimateError as error:
             status, words = "waiting", str(error)
         said = [] if status == self.status else [Said("word", f"{_iso(at)}: {words}")]
+        if self.settings.lengths is not None and self.latest is not None and not self.told_beyond:
+            beyond = self.settings.lengths.beyond(self.latest.rows.time_utc)
+            said += [Said("word", f"{_iso(at)}: {one}") for one in beyond]
+            self.told_beyond = bool(beyond)
         self.status = status
         self.lines += 1
         return [*said, Said("line", skiprope_line(skiprope_columns(answer)))]

@@ -165,6 +165,8 @@ def solve_rows(rows: Rows, orbit: Orbit | None, settings: SkipropeSettings, repo
     seconds = (rows.time_utc - rows.time_utc[0]).astype(np.int64) * 1e-9
     signals = skiprope_signals(seconds, measured, known)
     remarks += _judge_length(signals.span_s, settings.frequency_hz)
+    if settings.lengths is not None:
+        remarks += settings.lengths.beyond(rows.time_utc)
     report(settings.method, 0, 1, "")
     estimate, words = swing_taken_off(_estimated(signals, rows, reference, settings, yaw_used), settings.swing)
     remarks += words

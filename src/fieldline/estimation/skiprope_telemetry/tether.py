@@ -20,6 +20,7 @@ from fieldline.estimation.skiprope.rotary import LEAST_TURNING
 from fieldline.estimation.skiprope.solution import SkipropeEstimate
 
 COLUMNS = {"length_m": 1.0, "tether_length_m": 1.0, "length_km": 1e3, "tether_length_km": 1e3}
+MOST_BEYOND_S = 60.0  # of a table of lengths that ends before the telemetry does
 NEAREST_SWING = 2.0  # of a swing's frequency over the skiprope's: nearer ones are no correction
 
 
@@ -45,6 +46,20 @@ class TetherLengths:
         """[m] at times (n,)."""
         since = (np.asarray(time_utc, dtype="datetime64[ns]") - self.time_utc[0]).astype(np.int64)
         return np.interp(since, (self.time_utc - self.time_utc[0]).astype(np.int64), self.length_m)
+
+    def beyond(self, time_utc) -> tuple[str, ...]:
+        """A remark where rows at times (n,) lie outside the table, whose first and last length are held there."""
+        times = np.asarray(time_utc, dtype="datetime64[ns]")
+        early = int((self.time_utc[0] - times[0]).astype(np.int64)) * 1e-9
+        late = int((times[-1] - self.time_utc[-1]).astype(np.int64)) * 1e-9
+        words = []
+        if early > MOST_BEYOND_S:
+            words.append(f"begins {early:.0f} s after the first row")
+        if late > MOST_BEYOND_S:
+            words.append(f"ends {late:.0f} s before the last row")
+        if not words:
+            return ()
+        return (f"The tether may have moved unseen: the table of its lengths {' and '.join(words)}; lengths are held there.",)
 
     def described(self) -> dict:
         """For the record, plain types."""
