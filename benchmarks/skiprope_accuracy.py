@@ -19,7 +19,7 @@ from fieldline.cases.tp3123 import random_scenario, score, true_cone
 from fieldline.cases.tp3123.flight import RANGE_TESLA
 from fieldline.cases.tp3123.scenarios import TETHER_M, Scenario
 from fieldline.errors import NoEstimateError
-from fieldline.estimation.skiprope import cramer_rao, detect, estimate_skiprope
+from fieldline.estimation.skiprope import cramer_rao, detect, estimate_skiprope, field_vector, skiprope_signals
 from fieldline.estimation.skiprope.line_band import LOWEST_HZ
 from fieldline.estimation.skiprope.rotary import BAND_HZ
 
@@ -151,20 +151,28 @@ CASES = {
     "2,000 s": {"duration_s": 2000.0},
     "3,000 s": {"duration_s": 3000.0},
     "12,000 s": {"duration_s": 12000.0},
+    "a gap of 600 s after 2,400 s": {"gap_s": 600.0},
+    "pendulous motion at 15 mHz": {"pendulous_frequency_hz": 0.015},
+    "pendulous motion at 10 mHz": {"pendulous_frequency_hz": 0.010},
+    "pendulous motion at 7 mHz": {"pendulous_frequency_hz": 0.007},
+    "pendulous motion at 3 mHz": {"pendulous_frequency_hz": 0.003},
 }
+GAP_FROM_S = 2400.0
 
 
-def sweeps(count: int, first: int) -> None:
+def sweeps(count: int, first: int, only: str = "") -> None:
     """Median errors of amplitude, phase, plane and frequency over one thing at a time, and the bound."""
     names = ("bandpass, the paper's rule", "Kalman filter", "harmonic least squares")
     print("median over flights: amplitude %, phase deg, plane (its mean taken off) deg, frequency 1e-4\n")
     rows = [("", *names, "bound")]
     for words, changes in CASES.items():
+        if only not in words:
+            continue
         settings = dict(changes)
-        detuned = settings.pop("detuned", None)
+        detuned, gap_s = settings.pop("detuned", None), settings.pop("gap_s", 0.0)
         errors, bounds = defaultdict(list), []
         for seed in range(first, first + count):
-            one = random_scenario(seed, **settings)
+            one = with_gap(random_scenario(seed, **settings), gap_s)
             guess = None if detuned is None else detuned * abs(one.frequency_hz)
             for name in names:
                 try:
@@ -178,6 +186,16 @@ def sweeps(count: int, first: int) -> None:
         rows.append((words, *cells, cell(bounds, count)))
         print(rows[-1], flush=True)
     print(markdown(rows))
+
+
+def with_gap(one: Scenario, gap_s: float) -> Scenario:
+    """The flight without its samples in a gap, whose signals the estimators then lack."""
+    signals = one.signals
+    kept = (signals.seconds < GAP_FROM_S) | (signals.seconds >= GAP_FROM_S + gap_s)
+    if kept.all():
+        return one
+    known = field_vector(signals.geometry)[kept]
+    return one._replace(signals=skiprope_signals(signals.seconds[kept], signals.field_b[kept], known))
 
 
 def four_errors(one: Scenario, found) -> tuple[float, float, float, float]:
@@ -199,7 +217,8 @@ def four_errors(one: Scenario, found) -> tuple[float, float, float, float]:
 
 def bound(one: Scenario, settings: dict) -> tuple[float, float, float, float]:
     """The same four of the Cramer-Rao bound, medians of normal errors, with a slow part of 1 mHz."""
-    seconds = one.flight.seconds
+    seconds = one.signals.seconds
+    rows = np.searchsorted(one.flight.seconds, seconds)
     middle = 0.5 * seconds[-1]
     turn = np.exp(2j * np.pi * abs(one.frequency_hz) * middle)
     a1, a2 = np.radians(one.axes_deg)
@@ -207,7 +226,7 @@ def bound(one: Scenario, settings: dict) -> tuple[float, float, float, float]:
     exact = settings.get("assumed_field") == "IGRF-14"
     limit = cramer_rao(
         seconds,
-        one.flight.geometry,
+        type(one.flight.geometry)(*(column[rows] for column in one.flight.geometry)),
         phasor,
         abs(one.frequency_hz),
         noise_tesla=settings.get("noise_tesla", 2e-8),
@@ -235,9 +254,13 @@ def main() -> None:
     parser.add_argument("study", choices=sorted(studies))
     parser.add_argument("--count", type=int)
     parser.add_argument("--first", type=int, default=12000)
+    parser.add_argument("--only", default="", help="of the sweeps: lines whose name holds this")
     given = parser.parse_args()
     study, count = studies[given.study]
-    study(given.count or count, given.first)
+    if given.study == "sweeps":
+        sweeps(given.count or count, given.first, given.only)
+    else:
+        study(given.count or count, given.first)
 
 
 if __name__ == "__main__":

@@ -58,6 +58,7 @@ def random_scenario(
     field_errors=FIELD_ERRORS,
     noise_tesla: float = 2e-8,
     bits: int = 16,
+    pendulous_frequency_hz: float = 0.03125,
 ) -> Scenario:
     """The flight of a seed; without its skiprope, to count false alarms, for skiprope=False."""
     rng = np.random.default_rng(seed)
@@ -70,6 +71,7 @@ def random_scenario(
         rate_hz=rate_hz,
         skiprope_frequency_hz=frequency,
         skiprope_deg=axes if skiprope else (0.0, 0.0),
+        pendulous_frequency_hz=pendulous_frequency_hz,
         pendulous_deg=(swing, swing),
         bias_deg=(1.0, 1.0, yaw),
         field=field,
