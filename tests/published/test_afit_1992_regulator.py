@@ -74,6 +74,36 @@ def test_standoff_is_steady(runs):
     assert float(run["peak_current_a"]) == pytest.approx(916.747, rel=1e-6)
 
 
+MARGINS = {  # found here: factor on all controls, lag, delay of all, and the control that bears least delay by itself
+    "standoff": (0.188, 63.2, 114.4, "T"),
+    "r-bar": (0.161, 62.7, 23.8, "T"),
+    "v-bar": (0.2525, 60.8, 43.4, "T"),
+}
+
+
+@pytest.mark.parametrize("case", MARGINS)
+def test_margins(runs, case):
+    run, (factor, lag, delay, least) = runs[case], MARGINS[case]
+    # Least cost with R a multiple of 1: any factor from 1/2, any lag to 60 degrees, in each control and in all (Safonov 1977).
+    assert float(run["return_difference"]) == pytest.approx(1.0, abs=1e-6)
+    for name in ("gain_margin_low", "gain_margin_low_of"):
+        assert run[name].values.max() < 0.5
+    for name in ("gain_margin_high", "gain_margin_high_of"):
+        assert np.isinf(run[name].values).all()
+    assert float(run["phase_margin_deg_of"].min()) > 60.0
+    assert float(run["gain_margin_low"]) == pytest.approx(factor, rel=5e-3)
+    assert float(run["phase_margin_deg"]) == pytest.approx(lag, abs=0.06)
+    assert float(run["delay_margin_s"]) == pytest.approx(delay, abs=0.06)
+    assert str(run["control"].values[run["delay_margin_s_of"].values.argmin()]) == least
+    ends = np.linalg.eigvals(_closed(case, run, 0.995 * factor)), np.linalg.eigvals(_closed(case, run, 1.005 * factor))
+    assert ends[0].real.max() > 0.0 > ends[1].real.max()
+
+
+def _closed(case, run, factor):
+    F, G = _plant(case, "centre")
+    return F - factor * G @ run["gain"].values
+
+
 def crossing(run, axis, part):
     """[s] when the way from start to end is done but for `part`, for the last time."""
     place = run["state_of"].values[:, STATE[axis]]
@@ -224,8 +254,26 @@ def test_bad_input(arguments, words):
         lqr(**arguments)
 
 
-def test_a_linear_model_used_too_far_says_so():
-    far = lqr("v-bar", start_m=(0.0, 2e5, 0.0), target_m=(0.0, 1e5, 0.0))
-    assert float(far["motion_error"]) == pytest.approx(0.0152, abs=2e-4)
-    assert "relative motion is used outside its range: wrong by 1.5 %" in far.attrs["cautions"]
-    assert lqr("v-bar").attrs["cautions"] == ""
+# Little field across the orbit is left: what pushes along the track turns the body.
+NEAR_78 = {"start_m": (150, 0, 0), "target_m": (0, 0, 0), "inclination_deg": 78.5, "node_deg": 88.0}
+MOTION, FIELD, ANGLES = "relative motion is used", "a field that is the same everywhere is used", "the small-angle equations"
+
+
+@pytest.mark.parametrize(
+    ("case", "arguments", "words", "sizes"),
+    [
+        ("v-bar", {}, (), None),
+        ("r-bar", {"start_m": (3e4, 0, 0), "target_m": (3e4, 0, 0)}, (FIELD,), (0.0044, 0.01328)),
+        ("v-bar", {"start_m": (0, 2e5, 0), "target_m": (0, 1e5, 0)}, (MOTION, FIELD), (0.01518, 0.0201)),
+        ("standoff", NEAR_78, (ANGLES,), None),
+    ],
+)
+def test_a_linear_model_used_too_far_says_which_and_by_how_much(case, arguments, words, sizes):
+    far = lqr(case, **arguments)
+    told = far.attrs["cautions"]
+    assert [one in told for one in (MOTION, FIELD, ANGLES)] == [one in words for one in (MOTION, FIELD, ANGLES)]
+    for name, text, size in zip(("motion_error", "field_error"), (MOTION, FIELD), sizes or (), strict=False):
+        assert float(far[name]) == pytest.approx(size, rel=0.02)
+        assert (f"{text} outside its range: wrong by {100.0 * float(far[name]):.1f} %." in told) == (text in words)
+    most = np.degrees(np.abs(far["state_of"].values[:, 6::2]).max())
+    assert (f"angles reach {most:.0f} deg" in told) == (ANGLES in words) == (most > 15.0)

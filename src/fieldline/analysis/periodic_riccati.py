@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from fieldline.analysis.floquet import as_ring, characteristic_exponents, check_period, multipliers_of
+from fieldline.analysis.margins import held_delay, periodic_ranges
 from fieldline.control.periodic_system import (
     continuous_gains,
     continuous_steps,
@@ -22,6 +23,7 @@ from fieldline.control.periodic_system import (
     periodic_solution,
     product,
     reach,
+    transitions,
 )
 from fieldline.errors import InputError, NoEstimateError, nearest, shown
 
@@ -30,7 +32,7 @@ STABLE = 1.0 - 1e-9  # a multiplier beyond it is not told from one on the circle
 SETTLED = 1e-6  # of |P|: a residual beyond it is no solution
 
 
-def periodic_regulator(a, b, q, r, period_s: float, control: str = "held"):
+def periodic_regulator(a, b, q, r, period_s: float, control: str = "held", *, margins: bool = False):
     """Gains of the regulator (1) over a period, as a Dataset.
 
     a (N, n, n) [1/s], b (N, n, m), q (N, n, n) and r (N, m, m) at N equal steps over `period_s` [s], each also once for the
@@ -38,7 +40,9 @@ def periodic_regulator(a, b, q, r, period_s: float, control: str = "held"):
     "continuous". Constant coefficients throughout are one step of the length `period_s`.
 
     The Dataset has gain (time, control, state), riccati (time, state, state_also) = P with x'P x the cost from there on,
-    multiplier and pole [1/s] (mode) of the closed loop, complex; attributes residual and doublings.
+    multiplier and pole [1/s] (mode) of the closed loop, complex; attributes residual and doublings. With `margins` also
+    gain_margin_low and _high, between which a factor on all inputs leaves every multiplier inside the unit circle, the same of
+    each input alone (control), and delay_margin_s, the longest delay in whole steps of inputs held over each step: see `margins`.
     Errors: `InputError` for shapes and signs; `NoEstimateError` where no stabilising solution exists: a motion that does not
     decay by itself and that the input does not reach, or that the cost does not see.
     """
@@ -58,7 +62,24 @@ def periodic_regulator(a, b, q, r, period_s: float, control: str = "held"):
         raise NoEstimateError(_why_not(doublings, residual, multipliers))
     riccati = riccati / factor
     gains = continuous_gains(b, r, riccati) if held is None else held_gains(held, riccati)
-    return _dataset(gains, riccati, multipliers, period, {"residual": residual, "doublings": doublings, "control": control})
+    found = _dataset(gains, riccati, multipliers, period, {"residual": residual, "doublings": doublings, "control": control})
+    if not margins:
+        return found
+    if held is None:
+        return _with_margins(found, lambda f: transitions(a - (b * f) @ gains, period), held_problem(a, b, q, r, period))
+    return _with_margins(found, lambda f: held.phi - (held.gamma * f) @ gains, held)
+
+
+def _with_margins(found, steps_of, held):
+    """The Dataset with the ranges of gain of steps_of(factors) and the delay of its gains, held."""
+    gains = found["gain"].values
+    ranges = periodic_ranges(steps_of, gains.shape[1])
+    delay = held_delay(held.phi, held.gamma, gains, found.attrs["period_s"] / len(gains))
+    for at, name in enumerate(("gain_margin_low", "gain_margin_high")):
+        found[name] = (), ranges[0][at], {"units": "1", "long_name": "factor on all inputs that leaves the loop stable"}
+        found[f"{name}_of"] = "control", [one[at] for one in ranges[1:]], {"units": "1", "long_name": "the same, one input alone"}
+    found["delay_margin_s"] = (), delay, {"units": "s", "long_name": "delay of all inputs, in whole steps, that leaves it stable"}
+    return found
 
 
 def _checked(a, b, q, r) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

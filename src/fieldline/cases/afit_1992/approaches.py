@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fieldline.analysis.controllability import orbital_scale
+from fieldline.analysis.margins import Margins, frozen_margins
 from fieldline.cases.afit_1992.earth import ALTITUDE_M, FIELD_ANGLE_DEG, SOURCE, Circle, circle, whole
 from fieldline.cases.afit_1992.frozen_model import built, frozen_plant
 from fieldline.cases.afit_1992.reach import refuse_uncontrollable
@@ -88,7 +89,9 @@ def lqr(
     Returns
     -------
     Dataset: gain, prefilter, pole; state, control, force_h [N], moment_b [N m], reference_m over seconds; peak_current_a,
-    held_share (of the target, at the limit, by the least norm), most_held_share (by the best currents).
+    held_share (of the target, at the limit, by the least norm), most_held_share (by the best currents); of all controls and
+    (..._of) of each alone: gain_margin_low, gain_margin_high, phase_margin_deg, delay_margin_s, and return_difference
+    (`analysis.margins`), while the field stays at its angle.
 
     Raises
     ------
@@ -115,7 +118,9 @@ def lqr(
     held = _held(made, plant, target, number("current_limit_a", current_limit_a, 1e-9))
     if within_limit:
         refuse_unreachable(held["most_held_share"], target, f"{current_limit_a:g} A a conductor")
-    return _dataset(made, plant, orbit, found, response, references, settings | held | {"field_h": field_h})
+    n = orbit.mean_motion_rad_s
+    margins = frozen_margins(plant.F, plant.G, found.gain, rate=n, scale=orbital_scale(n))  # R is a multiple of 1
+    return _dataset(made, plant, orbit, found, response, references, settings | held | {"field_h": field_h, "margins": margins})
 
 
 def regulator_of(plant: Plant, orbit: Circle, state_weight: float, control_weight: float = 1.0) -> Regulator:
@@ -175,6 +180,27 @@ def _cautions(orbit: Circle, field_h: np.ndarray, response: Response) -> tuple[f
     return motion, field, told
 
 
+def _margins_of(margins: Margins) -> dict[str, tuple]:
+    """What the frozen loop forgives, all controls at once and each alone."""
+    every = {
+        "gain_margin_low": (margins.gain.low, [one.low for one in margins.gain_of], "1", "least stable factor"),
+        "gain_margin_high": (margins.gain.high, [one.high for one in margins.gain_of], "1", "largest stable factor"),
+        "phase_margin_deg": (
+            np.degrees(margins.lag_rad),
+            np.degrees(margins.lag_of_rad),
+            "degree",
+            "least lag or lead that loses it",
+        ),
+        "delay_margin_s": (margins.delay_s, margins.delay_of_s, "s", "least delay that loses it"),
+    }
+    found: dict[str, tuple] = {}
+    for name, (together, alone, unit, words) in every.items():
+        found[name] = (), together, {"units": unit, "long_name": f"{words}, all controls"}
+        found[f"{name}_of"] = "control", alone, {"units": unit, "long_name": f"{words}, one control"}
+    words = "least distance of the loop from -1, over R"
+    return found | {"return_difference": ((), margins.return_difference, {"units": "1", "long_name": words})}
+
+
 def _dataset(
     made: TrackingVehicle, plant: Plant, orbit: Circle, found: Regulator, response: Response, references: np.ndarray, settings
 ):
@@ -205,6 +231,7 @@ def _dataset(
             "moment_b": ((time, "axis"), inertia * loads[:, 7::2], {"units": "N m", "axes": "b"}),
             "reference_m": ((time, "axis"), references[:, :3], {"units": "m", "long_name": "command", "axes": "h"}),
             **{name: ((), value, {"units": unit, "long_name": words}) for name, (value, unit, words) in scalars.items()},
+            **_margins_of(settings["margins"]),
         },
         coords={
             time: (time, response.seconds, {"units": "s"}),
@@ -217,7 +244,7 @@ def _dataset(
             "title": f"{settings['case']}, field frozen at {settings['field_angle_deg']:g} deg",
             "case": "afit_1992_lqr",
             "source": f"{SOURCE}, section 4.2 and appendix E",
-            "settings_json": settings_text({key: value for key, value in settings.items() if key != "field_h"}),
+            "settings_json": settings_text({key: value for key, value in settings.items() if key not in ("field_h", "margins")}),
             "riccati_residual": found.residual,
             "cautions": " ".join(told),
         },

@@ -2,11 +2,12 @@
 
     dx/dt = (F - G(t) K(t)) x,   x(t + T) = X(T) x(t),   stable if every eigenvalue of X(T) is inside the unit circle
 
-Four gains: "frozen", K of one instant (33 degrees over the equator) kept for good, as in appendix E; "allocated", K of a
+Five gains: "frozen", K of one instant (33 degrees over the equator) kept for good, as in appendix E; "allocated", K of a
 regulator of force and moment, which never changes, and the least controls that give them; "scheduled", the regulator of
-each instant; "periodic", the regulator of the periodic system: over an equator in the time 2 pi/(n - we) in
-which the field's angle closes, elsewhere over a sidereal day, in which the orbit is taken to go round a whole number of
-times (16 instead of 15.5). The commands are zero, the state is known.
+each instant; "predictive", the first gain of a plan of 45 minutes in the field ahead, which is what the law of that name
+comes to while no limit is active; "periodic", the regulator of the periodic system: over an equator in the time
+2 pi/(n - we) in which the field's angle closes, elsewhere over a sidereal day, in which the orbit is taken to go round a
+whole number of times (16 instead of 15.5). The commands are zero, the state is known.
 
 The gains are made for the thesis's dipole. The truth may be another: the field times a factor, or IGRF-14.
 
@@ -28,11 +29,13 @@ from fieldline.cases.erbs_like import number
 from fieldline.control.electrodynamic import Plant, electrodynamic_map
 from fieldline.control.frozen_regulator import frozen_regulator
 from fieldline.control.periodic_system import continuous_instants, exponentials, instants_solution
+from fieldline.control.tracking.plan_gains import plan_gains
 from fieldline.environment.orbit_field import field_on_orbit_h
 from fieldline.errors import InputError, NoEstimateError, nearest, shown
 from fieldline.mechanics.relative_motion import input_matrix, output_matrix
 
-CONTROLLERS = ("frozen", "allocated", "scheduled", "periodic")
+CONTROLLERS = ("frozen", "allocated", "scheduled", "periodic", "predictive")
+STAGES, STAGE_S = 30, 90.0  # of the law's horizon
 TRUTHS = ("dipole", "IGRF-14")
 MOST_STEPS = 20_000
 SMALL_STEP = 0.02  # radians of the orbit, the first that is doubled
@@ -55,7 +58,7 @@ def turning_field(
 
     Parameters
     ----------
-    case : of appendix E; gives vehicle and weights.      controller : "frozen", "allocated", "scheduled" or "periodic".
+    case : of appendix E; gives vehicle and weights.      controller : one of CONTROLLERS.
     inclination_deg : of the orbit; argument, node and Greenwich's angle are zero at the start.
     field_angle_deg : at which the frozen gain was made.      step_s : about; the duration is cut into equal steps.
     duration_s : a turn of the field's angle over the equator, a sidereal day elsewhere.
@@ -114,6 +117,18 @@ def _loop(case, controller, orbit: Circle, halves, turning, inclination_deg, fie
     if controller == "allocated":
         return plant, _allocated_gains(plant, orbit, own.state_weight)
     n = orbit.mean_motion_rad_s
+    if controller == "predictive":
+
+        def ahead(seconds: float) -> np.ndarray:
+            return frozen_plant(
+                made,
+                orbit,
+                angle + np.degrees(turning - SPIN_RAD_S) * seconds,
+                inclination_deg,
+                node - np.degrees(SPIN_RAD_S) * seconds,
+            )[0].G
+
+        return plant, _predictive_gains(plant, ahead, orbit, own.state_weight)
     scale = orbital_scale(n)
     weights = np.diag(own.state_weight * np.repeat([1.0, orbit.radius_m], 6) * scale * scale)
     F, G = plant.F * scale / scale[:, None] / n, plant.G / scale[:, None] / n
@@ -136,6 +151,33 @@ def _scheduled_gains(F: np.ndarray, G: np.ndarray, weights: np.ndarray) -> np.nd
             'Take "periodic", which knows that it returns.'
         )
     return np.swapaxes(G, 1, 2) @ riccati / factor
+
+
+def _predictive_gains(plant: Plant, inputs_ahead, orbit: Circle, state_weight: float) -> np.ndarray:
+    """(N, m, 12) of plans from each instant; inputs_ahead(seconds) (N, 12, m).
+
+    What comes after a plan is weighed as the law does: by a regulator of accelerations at will, as large as all controls of one
+    unit make them, RMS.
+    """
+    n, m = orbit.mean_motion_rad_s, plant.G.shape[-1]
+    scale = orbital_scale(n)
+    weights = state_weight * np.repeat([1.0, orbit.radius_m], 6)
+    sizes = np.sqrt((np.abs(plant.G[:, 1::2]).sum(axis=2) ** 2).mean(axis=0))
+    pushes = np.zeros((12, 6))
+    pushes[1::2] = np.diag(np.maximum(sizes, 1e-6 * sizes.max()))
+    after = frozen_regulator(plant.F, pushes, output_matrix(), weights, np.ones(6), rate=n, scale=scale).riccati
+    length = n * STAGE_S
+    both = np.zeros((1, 24, 24))
+    both[0, :12, :12], both[0, :12, 12:] = length * plant.F * scale / scale[:, None] / n, length * np.eye(12)
+    step = exponentials(both)[0]
+
+    def inputs_of(stage: int) -> np.ndarray:
+        G = plant.G if stage == 0 else inputs_ahead((stage + 0.5) * STAGE_S)
+        return step[:12, 12:] @ (G / scale[:, None] / n)
+
+    ahead = after * np.outer(scale, scale) * n
+    gains = plan_gains(step[:12, :12], inputs_of, length * weights * scale * scale, np.full(m, length), ahead, STAGES)
+    return gains / scale
 
 
 def _allocated_gains(plant: Plant, orbit: Circle, state_weight: float) -> np.ndarray:
