@@ -143,6 +143,23 @@ def test_nor_does_the_real_field_in_place_of_the_dipole(controller):
     assert float(real["log_multiplier"]) == pytest.approx(float(dipole["log_multiplier"]), rel=0.25)
 
 
+@pytest.mark.parametrize("case", ["standoff", "r-bar", "v-bar"])
+@pytest.mark.parametrize("controller", ["frozen", "periodic"])
+def test_every_gain_is_stable_from_three_tenths_to_a_hundred_times_over_the_equator(case, controller):
+    found = turning_field(case, controller, step_s=10.0, margins=True)
+    assert float(found["gain_margin_low"]) < 0.3
+    assert float(found["gain_margin_high"]) > 100.0
+    assert float(found["delay_margin_s"]) == pytest.approx({"standoff": 95.0, "r-bar": 15.0, "v-bar": 35.0}[case], abs=16.0)
+
+
+def test_a_loop_that_is_lost_over_the_day_has_no_margins():
+    found = turning_field("standoff", "predictive", 28.5, step_s=60.0, margins=True)
+    low = float(found["gain_margin_low"])
+    assert low == pytest.approx(0.278, abs=0.01) and 59.9 <= float(found["delay_margin_s"]) <= 120.0
+    lost = turning_field("standoff", "frozen", 28.5, step_s=60.0, margins=True)
+    assert all(np.isnan(float(lost[name])) for name in ("gain_margin_low", "gain_margin_high", "delay_margin_s"))
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -129,23 +129,26 @@ def _spectral(matrix: np.ndarray) -> float:
     return float(np.abs(np.linalg.eigvals(matrix)).max()) if np.isfinite(matrix).all() else np.inf
 
 
+def gain_range(stable: Callable[[float], bool]) -> GainRange:
+    """The factors around 1 for which `stable` holds: the search of this page for any loop."""
+    return GainRange(_end(stable, 1.0 / FIRST), _end(stable, FIRST))
+
+
 def _ranges(stable: Callable[[np.ndarray], bool], m: int) -> list[GainRange]:
     """Of all inputs by one factor, then of each alone."""
-    every = [np.ones(m), *np.eye(m)]
-    return [GainRange(*(_end(stable, one, way) for way in (1.0 / FIRST, FIRST))) for one in every]
+    return [gain_range(lambda factor, one=one: stable(1.0 + (factor - 1.0) * one)) for one in (np.ones(m), *np.eye(m))]
 
 
-def _end(stable: Callable[[np.ndarray], bool], which: np.ndarray, way: float) -> float:
-    """The first factor on the way, from 1, that is not stable."""
-    good, factor = 1.0, way
-    while 1.0 / LARGEST_FACTOR < factor < LARGEST_FACTOR and stable(1.0 + (factor - 1.0) * which):
-        good, factor = factor, factor * way
-    if not 1.0 / LARGEST_FACTOR < factor < LARGEST_FACTOR:
-        return 0.0 if way < 1.0 else np.inf
-    bad = factor
+def _end(stable: Callable[[float], bool], way: float) -> float:
+    """The last stable factor on the way, from 1."""
+    good, bad = 1.0, way
+    while stable(bad):
+        good, bad = bad, bad * way
+        if not 1.0 / LARGEST_FACTOR < bad < LARGEST_FACTOR:
+            return 0.0 if way < 1.0 else np.inf
     for _ in range(HALVINGS):
-        middle = np.sqrt(good * bad)
-        good, bad = (middle, bad) if stable(1.0 + (middle - 1.0) * which) else (good, middle)
+        middle = float(np.sqrt(good * bad))
+        good, bad = (middle, bad) if stable(middle) else (good, middle)
     return float(good)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldline.errors import InputError
 from fieldline.files import write_text_whole, write_whole
-from fieldline.report.run_record import RunRecord
+from fieldline.report.run_record import MOST_BODIES, RunRecord
 from fieldline.report.theme import Picture, themed, write_png, write_svg
 
 if TYPE_CHECKING:
@@ -103,12 +103,16 @@ def _pictures(record: RunRecord) -> dict[str, list[Picture]]:
     from fieldline.report.run_line_figures import line_pictures
     from fieldline.report.run_load_figures import actuator_pictures, torque_picture
     from fieldline.report.run_motion_figures import attitude_picture, place_picture, pointing_picture, rate_picture
+    from fieldline.report.run_orbit_figures import orbit_picture
     from fieldline.report.run_relative_figures import relative_picture, separation_picture
     from fieldline.report.run_sensor_figures import knowledge_picture, sensor_picture
 
     with themed():
         groups: dict[str, list[Picture | None]] = {
-            "motion": [draw(record, b) for b in record.rigid for draw in (rate_picture, pointing_picture, attitude_picture)],
+            "motion": [
+                *(draw(record, b) for b in record.rigid for draw in (rate_picture, pointing_picture, attitude_picture)),
+                *(orbit_picture(record, b) for b in range(min(len(record.bodies), MOST_BODIES))),
+            ],
             "bodies": [separation_picture(record), relative_picture(record)],
             "approach": [picture for b in record.rigid for picture in approach_pictures(record, b)],
             "lines": [*line_pictures(record)],

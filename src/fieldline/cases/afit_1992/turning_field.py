@@ -20,6 +20,7 @@ from __future__ import annotations
 import numpy as np
 
 from fieldline.analysis.controllability import orbital_scale
+from fieldline.analysis.margins import gain_range, held_delay
 from fieldline.analysis.periodic_riccati import periodic_regulator
 from fieldline.cases.afit_1992.approaches import APPROACHES, regulator_of
 from fieldline.cases.afit_1992.earth import ALTITUDE_M, POLE_LONGITUDE_DEG, SOURCE, SPIN_RAD_S, Circle, circle
@@ -53,6 +54,7 @@ def turning_field(
     altitude_m: float = ALTITUDE_M,
     field_scale: float = 1.0,
     truth: str = "dipole",
+    margins: bool = False,
 ):
     """The transition of a closed loop over a turn of the field, or over a sidereal day, as a Dataset over `seconds`.
 
@@ -63,11 +65,14 @@ def turning_field(
     field_angle_deg : at which the frozen gain was made.      step_s : about; the duration is cut into equal steps.
     duration_s : a turn of the field's angle over the equator, a sidereal day elsewhere.
     field_scale : the true field over the one that the gains are made for.      truth : "dipole" or "IGRF-14" (1992).
+    margins : of the loop over the duration too, for some seconds (`analysis.margins`).
 
     Returns
     -------
     Dataset: growth, the greatest real part of the frozen loop's poles [1/s] at each step; log_multiplier, the logarithm of the
-    largest multiplier over the duration (negative: stable); unstable_share, of the time with growth; gain_norm.
+    largest multiplier over the duration (negative: stable); unstable_share, of the time with growth; gain_norm. With `margins`
+    gain_margin_low, gain_margin_high (factors on all controls, 0 to infinity, as far as the step resolves them) and
+    delay_margin_s (in whole steps of controls that are held), not numbers where the loop is lost as it is.
     """
     settings = dict(locals())
     for name, value, known in (("case", case, APPROACHES), ("controller", controller, CONTROLLERS), ("truth", truth, TRUTHS)):
@@ -219,6 +224,26 @@ def log_multiplier(closed: np.ndarray, step_s: float) -> float:
     return size + float(np.log(np.abs(np.linalg.eigvals(whole)).max()))
 
 
+def _margins(plant: Plant, gains: np.ndarray, scale: np.ndarray, halves: np.ndarray, verdict: float) -> dict[str, tuple]:
+    """What the loop over the duration forgives: a factor on all controls, and a delay where they are held over each step."""
+    F, G, K = plant.F * scale / scale[:, None], plant.G / scale[:, None], gains * scale
+    step = float(halves[2])
+    low, high, delay = np.nan, np.nan, np.nan
+    if verdict < 0.0:
+        low, high = gain_range(lambda factor: log_multiplier(F - factor * (G @ K), step) < 0.0)
+        both = np.zeros((1, 24, 24))
+        both[0, :12, :12], both[0, :12, 12:] = step * F, step * np.eye(12)
+        passed = exponentials(both)[0]
+        count = len(halves) // 2
+        held = K[:-1:2] if K.ndim == 3 else np.broadcast_to(K, (count, *K.shape))
+        delay = held_delay(np.broadcast_to(passed[:12, :12], (count, 12, 12)), passed[:12, 12:] @ G[1::2], held, step)
+    return {
+        "gain_margin_low": (low, "least factor on all controls that leaves the loop stable"),
+        "gain_margin_high": (high, "largest factor on all controls that does"),
+        "delay_margin_s": (delay, "longest delay of all controls, in whole steps, that does"),
+    }
+
+
 def _dataset(plant: Plant, gains: np.ndarray, orbit: Circle, halves: np.ndarray, settings: dict):
     """The verdict and how it comes about."""
     import xarray as xr
@@ -232,11 +257,16 @@ def _dataset(plant: Plant, gains: np.ndarray, orbit: Circle, halves: np.ndarray,
         "log_multiplier": (verdict, "logarithm of the largest multiplier over the duration; negative: stable"),
         "unstable_share": (float((growth > 0.0).mean()), "share of the time in which the loop of the instant is unstable"),
     }
+    if settings["margins"]:
+        scalars |= _margins(plant, gains, scale, halves, verdict)
     return xr.Dataset(
         {
             "growth": ("seconds", growth, {"units": "s-1", "long_name": "greatest real part of the instant's poles"}),
             "gain_norm": ("seconds", norms, {"units": "1", "long_name": "Frobenius norm of the gain, SI"}),
-            **{name: ((), value, {"units": "1", "long_name": words}) for name, (value, words) in scalars.items()},
+            **{
+                name: ((), value, {"units": "s" if name.endswith("_s") else "1", "long_name": words})
+                for name, (value, words) in scalars.items()
+            },
         },
         coords={"seconds": ("seconds", halves[:-1:2], {"units": "s"})},
         attrs={
