@@ -49,10 +49,10 @@ def turning():
     return seconds, h @ np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), h
 
 
-def beside(place):
-    """A measurement at rest in the target's turning axes, which are GCRS here."""
+def beside(place, rate=(0.0, 0.0, 0.0)):
+    """A measurement in the target's turning axes, which are GCRS here."""
     m = new_measurement()
-    velocity = np.cross([0.0, 0.0, N], place)
+    velocity = rate + np.cross([0.0, 0.0, N], place)
     m.position_i[:], m.velocity_i[:] = np.array([6.778e6, 0.0, 0.0]) + place, np.array([0.0, 7668.6, 0.0]) + velocity
     m.relative_position_i[:], m.relative_velocity_i[:] = place, velocity
     m.q_bi[:], m.omega_bi_b[:], m.field_i[:] = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, N), (1e-5, 0.0, 2.5e-5)
@@ -60,23 +60,41 @@ def beside(place):
     return m
 
 
-def test_the_law_within_its_limits_is_this_gain():
-    tank = tank_with_towers(vertical_m=330.0, horizontal_m=310.0)
+TANK = tank_with_towers(vertical_m=330.0, horizontal_m=310.0)
+
+
+@pytest.fixture(scope="module")
+def context():
     pair = [
         Thruster(name=name, position_b_m=(0.0, 0.0, -50.0 * way), direction_b=(0.0, 0.0, way), force_n=10.0)
         for name, way in (("south", 1.0), ("north", -1.0))
     ]
-    context = replace(
+    return replace(
         CARRIER,
-        inertia_kg_m2=np.diag(tank.inertia_kg_m2),
+        inertia_kg_m2=np.diag(TANK.inertia_kg_m2),
         mean_motion_rad_s=N,
-        mass_kg=tank.mass_kg,
+        mass_kg=TANK.mass_kg,
         radius_m=6.778e6,
         period_s=10.0,
-        conductors=tank.conductors,
+        conductors=TANK.conductors,
         thrusters=tuple(pair),
         field_along_orbit=turning,
     )
+
+
+def test_the_first_control_is_for_now_and_not_for_the_middle_of_its_stage(context):
+    # 10 s before the end of its way at 20 mm/s the body still takes -2 n M y' upwards; half a stage later it stands.
+    law, rate = LAWS["tracking-predictive"], -0.02
+    table = {"from_h_m": [0.0, 30.0, 0.0], "move_s": 3000.0, "closing_rate_m_s": -rate, "disturbance_s": 0.0, "filter_s": 0.0}
+    params = law.pack(table, context)
+    command = law.kernel(2990.0, beside(np.array([0.0, 0.2, 0.0]), (0.0, rate, 0.0)), np.zeros(law.memory), params)
+    push = np.zeros(3)
+    for wire, current in zip(TANK.conductors, command[2:], strict=True):
+        push += current * wire.length_m * np.cross(wire.direction_b, (1e-5, 0.0, 2.5e-5))
+    assert push[0] == pytest.approx(-2.0 * N * TANK.mass_kg * rate, rel=0.05)
+
+
+def test_the_law_within_its_limits_is_this_gain(context):
     law = LAWS["tracking-predictive"]
     place = np.array([0.0, 100.0, 0.0])
     params = law.pack({"place_h_m": place.tolist(), "disturbance_s": 0.0, "filter_s": 0.0}, context)

@@ -90,7 +90,7 @@ def _problem(t, first, memory, params, base, holds):
     u, held = np.zeros(m), np.zeros(m, dtype=np.int64)
     factor = params[own.FACTOR]
     for k in range(N):
-        middle = t + (k + 0.5) * params[base + STEP]
+        middle = t + (k + 0.5) * params[base + STEP] if k > 0 else t  # the first control is for now, till the next call
         if k == 0:
             effect[:] = first
         else:
