@@ -9,7 +9,8 @@ centre of mass, is straight below it at r1. With e small, x' = rbar n e is added
 
 The unstretched length is that which balances the tension of the pair at the length from the Shuttle to the attachment. A
 line with mass has nodes, which start on the straight line as its tension spaces them and turn with the pair. The Earth is a
-point of the program's GM; what else surrounds the two masses acts on them alone.
+point of the program's GM; its oblateness and the anomaly act on nodes, and on the halves of segments at the ends, as they do on
+the two masses, and the air on nodes where a drag area is given for the line. A line without mass feels none of them.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ SOURCE = "Smithsonian Astrophysical Observatory (1982), NASA-CR-170721"
 PLACEMENTS = ("attachment", "attachment-rigid", "centre")
 HERE = "fieldline.cases.sao_1982"
 LINE = "tether"
+OTHER_AREAS = ("upper_drag_area_m2", "line_drag_area_m2")  # of air, beside the subsatellite's
 START_UTC = "1982-10-01T00:00:00Z"  # gravity is a point's: the date plays no part
 EXACT = {
     "method": "dop853",
@@ -149,7 +151,8 @@ def scenario_of(
     """The `Scenario` of a pair and its start.
 
     torque_b_n_m : constant in the subsatellite. oblate, anomaly, air : see `surroundings`; `air` may hold
-    "upper_drag_area_m2", C_d A of the Shuttle, beside the keys of NO_AIR, which are the subsatellite's.
+    "upper_drag_area_m2", C_d A of the Shuttle, and "line_drag_area_m2", C_d A of the whole line seen from its side, which its
+    nodes share (what of it is next to the ends is left out), beside the keys of NO_AIR, which are the subsatellite's.
     """
     from fieldline.simulate.scenario import Scenario
 
@@ -166,9 +169,13 @@ def scenario_of(
             "disturbance_torque_b_n_m": floats(torque_b_n_m),
         },
     ]
-    upper_air = {**air, "drag_area_m2": air["upper_drag_area_m2"]} if air and "upper_drag_area_m2" in air else None
-    for body, its_air in zip(bodies, (upper_air, air), strict=True):
-        body["load"] = _loads(body["mass_kg"], oblate, anomaly, its_air)
+    half = 0.0 if pair.strung is None else 0.5 * pair.strung.line_mass_kg / (pair.strung.nodes + 1)
+    areas = (_own_air(air, "upper_drag_area_m2"), _own_air(air, None))
+    for body, its_air, lever_b in zip(bodies, areas, ((0.0, 0.0, 0.0), pair.lever_b_m), strict=True):
+        settings = {"end_mass_kg": half, "lever_b_m": lever_b}
+        body["load"] = _loads("surroundings_of_1978", body["mass_kg"], oblate, anomaly, its_air, **settings)
+    if half > 0.0:
+        line["load"] = _loads("surroundings_of_a_node", 0.0, oblate, anomaly, _line_air(air, pair.strung.nodes))
     bodies[1] |= _beside(places, velocities)
     return Scenario.from_dict(
         {
@@ -203,13 +210,30 @@ def _beside(places, velocities) -> dict:
     return {"offset_o_m": floats(offset), "offset_rate_o_m_s": floats(rate)}
 
 
-def _loads(mass_kg: float, oblate: bool, anomaly: dict | None, air: dict | None) -> list[dict]:
-    """What surrounds a body besides the pull of a point, as a load."""
+def _own_air(air: dict | None, area: str | None) -> dict | None:
+    """The air of one body: `area` names its drag area among what is given, None the subsatellite's; None for no air."""
+    if not air:
+        return air
+    own = {key: value for key, value in air.items() if key not in OTHER_AREAS}
+    if area is None:
+        return own
+    return own | {"drag_area_m2": air.get(area, 0.0)}
+
+
+def _line_air(air: dict | None, nodes: int) -> dict | None:
+    """The air of one node."""
+    own = _own_air(air, "line_drag_area_m2")
+    if not own:
+        return own
+    return own | {"drag_area_m2": number('air["line_drag_area_m2"]', own["drag_area_m2"], 0.0, 1e12) / (nodes + 1)}
+
+
+def _loads(function: str, mass_kg: float, oblate: bool, anomaly: dict | None, air: dict | None, **settings) -> list[dict]:
+    """What surrounds a body or a node besides the pull of a point, as a load."""
     if not oblate and anomaly is None and air is None:
         return []
-    own = {key: value for key, value in (air or {}).items() if key != "upper_drag_area_m2"}
-    parameters = load_parameters(mass_kg, j2=J2 if oblate else 0.0, anomaly=anomaly, air=own or None)
-    return [{"function": f"{HERE}.surroundings:surroundings_of_1978", "parameters": parameters}]
+    parameters = load_parameters(mass_kg, j2=J2 if oblate else 0.0, anomaly=anomaly, air=air or None, **settings)
+    return [{"function": f"{HERE}.surroundings:{function}", "parameters": parameters}]
 
 
 def floats(values) -> list[float]:

@@ -63,7 +63,7 @@ def spin(
     spin_rad_s : phi'; by default that of the stationary motion. The report's number is PRINTED_SPIN_RAD_S; it is the
         hanging branch's rate about the axis, and serves the inverted one because C = 2 A.
     placement : where masses and attachment start, see `flight`. damping : b [N s/m] or "critical".
-    oblate, anomaly, air : J2, a mass anomaly, drag; see `surroundings`.
+    oblate, anomaly, air : J2, a mass anomaly, drag, of nodes too; see `surroundings` and `flight.scenario_of`.
     nodes, line_mass_kg : of a line with mass (s. 3.2); damp it little, its steps get short otherwise.
 
     Returns
