@@ -33,6 +33,7 @@ from fieldline.simulate.assembly.start import start_of
 from fieldline.simulate.interruption import noted
 from fieldline.simulate.loop.fly import fly
 from fieldline.simulate.loop.records import Outcome, Run, Stepping
+from fieldline.simulate.scenario.line_tolerance import allowed
 from fieldline.simulate.scenario.states import period_s, start_states
 
 FLOOR_M = 80e3  # height below which neither orbit nor air models mean anything
@@ -144,20 +145,21 @@ def stepping_of(scenario, plant, duration_s: float) -> Stepping:
     integrator = scenario.integrator
     adaptive = integrator.method != "rk4"
     absolute = np.full(tangent_size(plant), integrator.rate_tolerance_rad_s)
-    allowed = [integrator.position_allowed_m] * 3 + [integrator.velocity_tolerance_m_s] * 3
-    allowed += [integrator.angle_allowed_rad] * 3 + [integrator.rate_tolerance_rad_s] * 3
+    relative, position = allowed(scenario)
+    each = [position] * 3 + [integrator.velocity_tolerance_m_s] * 3
+    each += [integrator.angle_allowed_rad] * 3 + [integrator.rate_tolerance_rad_s] * 3
     bodies = len(plant.bodies.mass)
     for b in range(bodies):
-        absolute[TANGENT * b : TANGENT * (b + 1)] = allowed
+        absolute[TANGENT * b : TANGENT * (b + 1)] = each
     nodes, feeds, temperatures = (start - bodies for start in starts_in_state(plant))
-    absolute[nodes:feeds] = np.tile(allowed[:6], (feeds - nodes) // 6)
-    absolute[feeds:temperatures] = np.tile([allowed[0], allowed[3]], (temperatures - feeds) // 2)
+    absolute[nodes:feeds] = np.tile(each[:6], (feeds - nodes) // 6)
+    absolute[feeds:temperatures] = np.tile([each[0], each[3]], (temperatures - feeds) // 2)
     absolute[temperatures:] = TEMPERATURE_TOLERANCE_K
     return Stepping(
         tableau=DOP853 if adaptive else RK4,
         adaptive=adaptive,
         step=(integrator.step_max_s or 1e9) if adaptive else integrator.step_s,
-        relative=integrator.relative_allowed,
+        relative=relative,
         absolute=absolute,
         end=duration_s,
         floor=FLOOR_M,

@@ -28,10 +28,13 @@ class Integrator(Record):
         ge=1e-14,
         le=1e-2,
         description="error of a step over the state, which holds the distance from the Earth's centre; by default 1e-9 for "
-        "dop853, 1e-12 for rosenbrock [-]",
+        "dop853, 1e-12 for rosenbrock, less where its position_tolerance_m by default asks for it [-]",
     )
     position_tolerance_m: float | None = Field(
-        default=None, gt=0.0, description="error of a step in position [m]; by default 1e-3 for dop853, 1e-4 for rosenbrock"
+        default=None,
+        gt=0.0,
+        description="error of a step in position [m]; by default 1e-3 for dop853; for rosenbrock 1e-4, or a "
+        "hundredth of what the stiffest segment of a line is stretched by at rest if that is less, but 1e-7 at least",
     )
     velocity_tolerance_m_s: float = Field(
         default=1e-6, gt=0.0, description="error of a step in velocity; rosenbrock also allows position_tolerance_m a step [m/s]"
@@ -63,16 +66,6 @@ class Integrator(Record):
                 ]
             )
         return self
-
-    @property
-    def relative_allowed(self) -> float:
-        """Error of a step over the state [-]."""
-        return self.relative_tolerance or (1e-12 if self.method == "rosenbrock" else 1e-9)
-
-    @property
-    def position_allowed_m(self) -> float:
-        """Error of a step in position [m]."""
-        return self.position_tolerance_m or (1e-4 if self.method == "rosenbrock" else 1e-3)
 
     @property
     def angle_allowed_rad(self) -> float:

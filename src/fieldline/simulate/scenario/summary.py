@@ -10,6 +10,7 @@ import numpy as np
 from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M, EARTH_GM_M3_S2
 from fieldline.simulate.scenario.body import SENSORS
 from fieldline.simulate.scenario.coarseness import longest_step_s
+from fieldline.simulate.scenario.line_tolerance import allowed
 from fieldline.simulate.scenario.states import period_s, start_states
 
 LABEL = 12  # columns of the first word
@@ -76,7 +77,7 @@ def _integrator(scenario, length_s: float) -> str:
     one = scenario.integrator
     field = "at each stage" if one.field_update == "stage" else "once per step"
     if one.method != "rk4":
-        return f"{one.method}, error of a step {one.position_allowed_m:g} m, field {field}"
+        return f"{one.method}, error of a step {allowed(scenario)[1]:.2g} m, field {field}"
     steps = length_s / longest_step_s(scenario)
     return f"rk4, step {one.step_s:g} s, field {field}: at least {steps:,.0f} steps"
 
