@@ -31,6 +31,8 @@ def test_rate_and_tension_of_the_test_case():
     """Printed: n = 1.178021398e-3 rad/s, F = 0.8342029979e6 dyn."""
     two = dumbbell(100.0, 86363.0, 6578e3, 6598e3, 3.986013e14)
     assert two.orbital_rate_rad_s == pytest.approx(1.178021398e-3, abs=5e-13)
+    assert two.orbital_rate_rad_s == pytest.approx(1.17802139839214e-3, rel=1e-14)
+    assert two.tension_n == pytest.approx(8.34202997894832, rel=1e-14)
     assert two.tension_n == pytest.approx(8.342029979, abs=5e-10)
     assert two.mean_radius_m == pytest.approx(6597976.7984, abs=1e-4)
     assert 3.0 * two.orbital_rate_rad_s**2 * 20e3 * two.reduced_mass_kg == pytest.approx(8.3167765, abs=1e-6)  # (1): 0.3 % low
@@ -42,6 +44,10 @@ def test_printed_spin_is_the_hanging_rate_about_the_axis():
     theta = np.radians(20.0)
     about_axis = spin_for_angle(body, theta) + body.orbital_rate_rad_s * np.cos(theta)
     assert about_axis == pytest.approx(-PRINTED_SPIN_RAD_S, abs=5e-12)
+    assert about_axis == pytest.approx(0.049193392829679, abs=2e-14)
+    unrounded = dumbbell(100.0, 86363.0, 6578e3, 6598e3, 3.986013e14)
+    exact = report_body(orbital_rate_rad_s=unrounded.orbital_rate_rad_s, tension_n=unrounded.tension_n)
+    assert spin_for_angle(exact, theta) + exact.orbital_rate_rad_s * np.cos(theta) == pytest.approx(0.049193392813371, abs=2e-14)
     assert spin_for_angle(body, -theta) == pytest.approx(PRINTED_SPIN_RAD_S, abs=5e-12)
     other = report_body(axial_inertia_kg_m2=1.5e5)
     assert spin_for_angle(other, -theta) != pytest.approx(-spin_for_angle(other, theta) - 1e-3 * np.cos(theta), rel=1e-3)

@@ -105,6 +105,8 @@ def test_critical_values():
     two = dumbbell(100.0, 86363.0, 6578e3, 6598e3, 3.986013e14)
     assert critical_angular_damping(40.0, two.tension_n, 1.0) == pytest.approx(36.53, abs=5e-3)
     assert critical_damping(two, 20e3, 3.2e5) == pytest.approx(79.95, abs=5e-3)
+    assert np.sqrt(two.tension_n / 40.0) == pytest.approx(0.4567, abs=5e-5)  # the swing of the annex's ball of 40 kg m^2
+    assert np.sqrt(3.2e5 / 20e3 / 100.0) == pytest.approx(0.4, abs=1e-12)  # its stretch
 
 
 def turned(lever, chord, omega, chord_rate, h):

@@ -208,3 +208,15 @@ def test_what_has_no_modes_is_refused():
         fl.tether_modes(*LINE, 501)
     with pytest.raises(InputError, match="above zero for every material"):
         fl.tether_modes([1e3, 1e3], [1e-3, 0.0], 1e5, 10.0, 10.0, 500e3)
+
+
+def test_twenty_segments_are_as_far_from_the_continuum_as_told():
+    """First lateral modes -1.1e-3 of themselves, the first along the line -4e-5, librations below 1e-6."""
+    line, whole = fl.tether_modes(*LINE, 19, gm_m3_s2=GM), fl.tether_modes(*LINE, gm_m3_s2=GM)
+    away = {
+        name: line[name].values[:2] / whole[name].values[:2] - 1.0 for name in ("in_plane_frequency", "out_of_plane_frequency")
+    }
+    for both in away.values():
+        assert abs(both[0]) < 1e-6 and np.isclose(both[1], -1.1e-3, atol=5e-5)
+    stretch = line["along_line_frequency"].values[0] / whole["along_line_frequency"].values[0] - 1.0
+    assert np.isclose(stretch, -6e-5, atol=1e-5)  # told -4e-5; -2.4e-4 of ten segments, -9.6e-6 of fifty, are 1/N^2 too

@@ -173,3 +173,20 @@ def test_numbers_that_cannot_be_are_refused_by_name():
         hanging_line(*LINE, length="streched")
     with pytest.raises(InputError, match='did you mean "upper"'):
         hang(chain_grid(cut(Stretches(*np.ones((3, 1))), 1), 1.0, 1.0), 7e6, "uper")
+
+
+def test_the_rate_comes_to_the_continuum_with_the_square_of_the_spacing():
+    """4.6e-9 / N^2 of itself, of an independent code; below 1e-12 rounding is not far."""
+    continuum = hanging_line(*LINE, None, gm_m3_s2=GM).rate
+    for segments in (1, 2, 5, 10, 20):
+        hanging = hanging_line(*LINE, segments - 1, gm_m3_s2=GM)
+        assert np.isclose((hanging.rate / continuum - 1.0) * segments**2, 4.6e-9, rtol=0.03)
+
+
+def test_the_first_segment_is_half_an_element_from_the_end():
+    """Its tension is that of its middle: against the end's it is off by half a segment's share of the gradient, O(1/N)."""
+    continuum = hanging_line(*LINE, None, gm_m3_s2=GM)
+    slope = 8.35e-3 * (GM / continuum.radius[0] ** 2 - continuum.rate**2 * continuum.radius[0])
+    for segments in (20, 50, 100):
+        hanging = hanging_line(*LINE, segments - 1, gm_m3_s2=GM)
+        assert np.isclose(hanging.tension[0] - 41.4852, 0.5 * slope * 20e3 / segments, rtol=0.03)

@@ -83,6 +83,21 @@ def test_lateral_modes(mode, phase):
     assert np.isclose(rate, family.rate[mode], rtol=3e-6 * mode**2)
 
 
+@pytest.mark.parametrize("phase, told", [(0.0, 10.12792), (90.0, 10.17724)])
+def test_a_wide_lateral_swing_is_slower(phase, told):
+    """Of ten segments, 20 m: the frequency over n of an independent code, below that of the linear mode, as the square."""
+    rest, away = tf.at_rest(9), []
+    family, direction = (eigenmotions(rest).in_plane, 0) if phase == 0.0 else (eigenmotions(rest).out_of_plane, 1)
+    for amplitude in (20.0, 40.0):
+        start = {"skiprope_amplitude_m": amplitude, "skiprope_phase_deg": phase, "skiprope_sense": "plane"}
+        one = tf.points(tf.flown(tf.hung(9, seconds=6000, output=10, step=0.1, start=start, damping_n_s=DAMPED)))
+        amplitudes, _ = modal_amplitudes(tf.shape(one), one.mass, modes=1)
+        rate = tf.frequency(one.seconds, amplitudes[:, 0, direction], family.rate[1]) / rest.rate
+        away.append(rate - family.rate[1] / rest.rate)
+    assert np.isclose(family.rate[1] / rest.rate + away[0], told, atol=1e-4)
+    assert away[0] < -3e-4 and np.isclose(away[1] / away[0], 4.0, rtol=0.02)
+
+
 def test_longitudinal_modes():
     """A pulse holds all of them; each is seen by its own shape."""
     start = {"pulse_amplitude_m": 0.2, "pulse_width_m": 5000.0, "pulse_middle": 0.4}
