@@ -169,13 +169,14 @@ def scenario_of(
             "disturbance_torque_b_n_m": floats(torque_b_n_m),
         },
     ]
-    half = 0.0 if pair.strung is None else 0.5 * pair.strung.line_mass_kg / (pair.strung.nodes + 1)
+    nodes, line_mass = (0, 0.0) if pair.strung is None else (pair.strung.nodes, pair.strung.line_mass_kg)
+    half = 0.5 * line_mass / (nodes + 1)
     areas = (_own_air(air, "upper_drag_area_m2"), _own_air(air, None))
     for body, its_air, lever_b in zip(bodies, areas, ((0.0, 0.0, 0.0), pair.lever_b_m), strict=True):
         settings = {"end_mass_kg": half, "lever_b_m": lever_b}
         body["load"] = _loads("surroundings_of_1978", body["mass_kg"], oblate, anomaly, its_air, **settings)
     if half > 0.0:
-        line["load"] = _loads("surroundings_of_a_node", 0.0, oblate, anomaly, _line_air(air, pair.strung.nodes))
+        line["load"] = _loads("surroundings_of_a_node", 0.0, oblate, anomaly, _line_air(air, nodes))
     bodies[1] |= _beside(places, velocities)
     return Scenario.from_dict(
         {
