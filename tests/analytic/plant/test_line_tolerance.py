@@ -77,4 +77,4 @@ def test_the_fastest_oscillation_along_a_line(segments, told):
     one = tf.hung(segments - 1, seconds=10.0, output=1.0, step=0.001, damping_n_s=0.05 * tf.STIFFNESS_N)
     rate, step = fastest_along(one, 0)
     assert rate == pytest.approx(told, rel=1e-3)
-    assert step == pytest.approx(min(2.8 / rate, 2.8 / (0.05 * rate**2)))
+    assert step == pytest.approx(min(2.77 / rate, 2.77 / (0.05 * rate**2)))
