@@ -44,7 +44,6 @@ def chapter(markdown) -> list[str]:
         f"Exact steps of the filter and steps of fourth order differ over the day by at most {worst:.1g} rad.",
         "",
         *markdown(streams),
-        "",
         *markdown([("the tool's stream, a row at 16 Hz", "microseconds", "hoped for"), *map(stream_row, METHODS)]),
     ]
 

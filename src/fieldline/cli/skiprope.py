@@ -103,7 +103,7 @@ def skiprope(
         typer.Option(help="Live: what is remembered goes here, and comes from here after a restart.", show_default=False),
     ] = None,
     every_s: Annotated[
-        float | None, typer.Option(help="Live: time between estimates; a period by default, or half.", show_default=False)
+        float | None, typer.Option(help="Live: between estimates; half a period, harmonic one and a half.", show_default=False)
     ] = None,
     memory_s: Annotated[
         float | None, typer.Option(help="Live: rows as old as this are used; twenty periods by default.", show_default=False)

@@ -22,7 +22,7 @@ from fieldline.telemetry.stream import Rows
 
 FORMAT = "fieldline skiprope state 1"
 MEMORY_PERIODS, MEMORY_S = 20.0, 4000.0
-EVERY_PERIODS, EVERY_S = 0.5, 100.0  # twice as long for the harmonic method, which takes thrice as long
+EVERY_PERIODS, EVERY_S = 0.5, 100.0  # three times as long for the harmonic method, which takes three times as long
 LONGEST_MEMORY_S = 86400.0
 _VECTORS = {"position_m": 2, "crossing_time": COUNT, "crossing_std_s": COUNT, "crossing_towards": COUNT}
 
@@ -38,7 +38,7 @@ class SkipropeStream:
     """Rows in, lines and words out. `latest` is the newest estimate, None before the first.
 
     memory_s : of the rows that an estimate is made of; twenty periods, or 4,000 s.      every_s : between estimates; half a
-    period, or 100 s; for the harmonic method a period, or 200 s.
+    period, or 100 s; for the harmonic method a period and a half, or 300 s.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class SkipropeStream:
     ):
         period = None if settings.frequency_hz is None else 1.0 / settings.frequency_hz
         memory = memory_s or (MEMORY_S if period is None else MEMORY_PERIODS * period)
-        pace = 2.0 if settings.method == "harmonic" else 1.0
+        pace = 3.0 if settings.method == "harmonic" else 1.0
         every = every_s or pace * (EVERY_S if period is None else EVERY_PERIODS * period)
         if not 1.0 <= every <= memory <= LONGEST_MEMORY_S:
             raise InputError(
