@@ -6,7 +6,7 @@ import pytest
 import fieldline as fl
 import tether_flights as tf
 from fieldline.simulate.flight import Flight
-from fieldline.simulate.scenario.line_stiffness import fastest_along
+from fieldline.simulate.scenario.line_stiffness import fastest_along, held_by_rk4
 from fieldline.simulate.scenario.line_tolerance import allowed, least_stretch
 from fieldline.simulate.scenario.summary import summary
 from fieldline.simulate.scenario.templates import template
@@ -73,8 +73,32 @@ def test_a_flight_takes_it_and_the_summary_tells_it():
 
 @pytest.mark.parametrize(("segments", "told"), [(10, 6.11), (20, 12.34), (50, 30.94), (100, 61.9)])
 def test_the_fastest_oscillation_along_a_line(segments, told):
-    """Of an independent code; damping of 50 ms times its square binds rk4 where it is more."""
+    """Of an independent code."""
     one = tf.hung(segments - 1, seconds=10.0, output=1.0, step=0.001, damping_n_s=0.05 * tf.STIFFNESS_N)
     rate, step = fastest_along(one, 0)
     assert rate == pytest.approx(told, rel=1e-3)
-    assert step == pytest.approx(min(2.77 / rate, 2.77 / (0.05 * rate**2)))
+    assert step == held_by_rk4(rate, 0.05)
+
+
+def grown(rate, lag_s, step_s, steps=4000):
+    """How much larger a damped oscillation is after so many steps of the classical rule, by the powers of its matrix."""
+    oscillator = np.array([[0.0, 1.0], [-(rate**2), -lag_s * rate**2]]) * step_s
+    square = oscillator @ oscillator
+    one = np.eye(2) + oscillator + square / 2.0 + square @ oscillator / 6.0 + square @ square / 24.0
+    scale = np.diag([1.0, 1.0 / rate])
+    return np.linalg.norm(scale @ np.linalg.matrix_power(one, steps) @ np.linalg.inv(scale))
+
+
+@pytest.mark.parametrize("lag_times_rate", [0.0, 0.01, 0.3, 1.0, 1.5, 1.9, 2.0, 2.5, 5.0, 100.0])
+def test_the_longest_step_of_rk4_is_the_last_that_holds_every_oscillation(lag_times_rate):
+    fastest = 31.0
+    lag_s = lag_times_rate / fastest
+    step = held_by_rk4(fastest, lag_s)
+    rates = np.linspace(0.01, 1.0, 100) * fastest
+    assert max(grown(rate, lag_s, step) for rate in rates) < 10.0
+    assert max(grown(rate, lag_s, 1.01 * step) for rate in rates) > 1e3
+
+
+def test_without_damping_and_with_much_the_limits_are_those_of_the_axes():
+    assert held_by_rk4(7.0, 0.0) == pytest.approx(np.sqrt(8.0) / 7.0, rel=2e-3)
+    assert held_by_rk4(7.0, 200.0) == pytest.approx(2.785293563405282 / (200.0 * 49.0), rel=2e-3)

@@ -93,7 +93,7 @@ def fly(tmp_path, monkeypatch, capsys):
             {"line": "[[line.stretch]]\nlength_m = 1200.0"},
             "stretch must not be longer together than the line, 1000 m; got 1200 m",
         ),
-        ({"integrator": "step_s = 1.0"}, 'may be 0.24 s. Use step_s = 0.2, or method = "rosenbrock", whose step the stiffness'),
+        ({"integrator": "step_s = 1.0"}, 'may be 0.25 s. Use step_s = 0.2, or method = "rosenbrock", whose step the stiffness'),
         ({"line": REEL.replace("900.0", "-1.0")}, "reel.shortest_length_m must be more than 0; got -1"),
         ({"line": REEL.replace("2000.0", "900.0")}, "reel.total_length_m must be at least what is out, rest_length_m = 1000 m"),
         (
