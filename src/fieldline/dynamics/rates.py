@@ -354,12 +354,23 @@ def body_rates(t, b, z, start, dcm_ei, plant, inputs, frozen, shared, log, out):
 
 
 @inner
+def earth_at(t, ephemeris, shared):
+    """dcm_ei at t; what it was at the last evaluation is kept, since two stages and two steps share their times."""
+    if shared.earth_time[0] != t:
+        shared.earth_time[0] = t
+        dcm_ei = dcm_ei_kernel(t, ephemeris)
+        for j in range(9):
+            shared.earth[0, j] = dcm_ei[j]
+    return row9(shared.earth, 0)
+
+
+@inner
 def plant_rates(t, z, start, plant, inputs, frozen, loads, call, shared, log, out):
     """Fill `out` with dz/dt at t; 0, or the number of what a user's load did wrong.
 
     start (bodies, 4): attitudes at the step's start. frozen: field [T] to use, (bodies, 3); (0, 3): what it is here.
     """
-    dcm_ei = dcm_ei_kernel(t, plant.surroundings.ephemeris)
+    dcm_ei = earth_at(t, plant.surroundings.ephemeris, shared)
     lined, used = plant.lines.nodes.shape[0] > 0, plant.user.body.shape[0] > 0
     if lined or used:
         shared.outer[:, :] = 0.0

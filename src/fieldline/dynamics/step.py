@@ -46,6 +46,10 @@ class Shared(NamedTuple):
     outer: np.ndarray  # (bodies, 6) forces_i and torques_b of lines and of the user's loads
     end_mass: np.ndarray  # (bodies, 10) of the lines' ends, equation (3) of `fieldline.dynamics.lines.chain`
     tension: np.ndarray  # (segments,) [N] at the last evaluation
+    rest: np.ndarray  # (segments,) [m], unstretched, and
+    mass: np.ndarray  # (segments,) [kg] then
+    earth: np.ndarray  # (1, 9) dcm_ei of the last evaluation, and
+    earth_time: np.ndarray  # (1,) [s] when that was
     ambient: Ambient
     state: np.ndarray  # (13,) state of the body that a user's load acts on
     reply: np.ndarray  # (64 or more,) what a user's function answered
@@ -77,6 +81,10 @@ def new_shared(plant: Plant, actuators: int = 0) -> Shared:
         outer=np.zeros((len(plant.bodies.mass), 6)),
         end_mass=np.zeros((len(plant.bodies.mass), END_MASS)),
         tension=np.zeros(len(plant.lines.rest)),
+        rest=np.zeros(len(plant.lines.rest)),
+        mass=np.zeros(len(plant.lines.rest)),
+        earth=np.zeros((1, 9)),
+        earth_time=np.full(1, np.nan),
         ambient=new_ambient(plant),
         state=np.zeros(13),
         reply=np.zeros(64 + len(plant.thrusters.body)),

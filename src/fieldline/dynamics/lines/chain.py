@@ -21,11 +21,12 @@ from __future__ import annotations
 
 from math import sqrt
 
-from fieldline.compiled import inner, merged
+from fieldline.compiled import inner
 from fieldline.dynamics.layout import NOTHING, attitude_at, feeds_at, nodes_at, store, temperatures_at, three
 from fieldline.dynamics.lines.feed import feed_acceleration, feed_loads, passage_push
 from fieldline.dynamics.lines.heat import warming
 from fieldline.dynamics.lines.segment_loads import segment_load
+from fieldline.dynamics.lines.segments import node_rate, pull_inside, tighten
 from fieldline.dynamics.load_log import LINES, impose
 from fieldline.dynamics.loads.joint import joint_torque
 from fieldline.dynamics.parameters import NO_REEL, TANGENT
@@ -154,64 +155,63 @@ def carry_to_attachment(b, gone, moving, point_b, place, speed, q, z, dcm_ei, su
     impose(log, LINES, b, push, cross(scale(0.5, point_b), to_body(q, push)), outer)
 
 
-@merged
-def tighten(chord, chord_rate, rest, rest_rate, stiffness, damping):
-    """Tension [N] of a segment by (1), and what it pulls per metre of chord [N/m]; zeros where it is slack."""
-    stretched = sqrt(dot(chord, chord))
-    if stretched <= rest:
-        return 0.0, 0.0
-    inverse, share = 1.0 / stretched, 1.0 / rest
-    rate = dot(chord, chord_rate) * inverse - rest_rate * stretched * share
-    tension = max(0.0, (stiffness * (stretched - rest) + damping * rate) * share)
-    return tension, tension * inverse
+@inner
+def measure(k, z, row, plant, shared):
+    """Unstretched length [m] and mass [kg] of each segment of line k, as it is fed and as warm as it is, into `shared`.
+
+    Returns the rate of the last one's length [m/s].
+    """
+    lines, nodes, feed = plant.lines, plant.lines.nodes[k], feeds_at(plant) + 2 * k
+    rests, masses = shared.rest[row : row + nodes + 1], shared.mass[row : row + nodes + 1]
+    cold, linear_mass = lines.rest[row : row + nodes + 1], lines.linear_mass[row : row + nodes + 1]
+    for j in range(nodes):
+        rests[j] = cold[j]
+        masses[j] = linear_mass[j] * cold[j]
+    rests[nodes], rate = z[feed], z[feed + 1]
+    masses[nodes] = linear_mass[nodes] * z[feed]
+    if lines.warm[k + 1] > lines.warm[k]:
+        warm = temperatures_at(plant) + lines.warm[k]
+        for j in range(nodes + 1):
+            rests[j] *= 1.0 + lines.expansion[k] * (z[warm + j] - lines.reference[k])
+        rate *= 1.0 + lines.expansion[k] * (z[warm + nodes] - lines.reference[k])
+    return rate
 
 
 @inner
 def pull_nodes(k, z, ends, row, base, plant, shared, out):
-    """Rates of the nodes of line k into `out`, tensions of all its segments into shared.tension.
+    """Rates of the nodes of line k into `out`, tensions, lengths and masses of all its segments into `shared`.
 
     ends: places and velocities of A's and B's attachments; row, base: where its segments start in `lines`, its nodes in z.
-    Returns (force on A's end [N], half segment there [kg], on B's end, half segment, mass that is out [kg]), without weight.
-    Nodes have the pull of a point Earth; `surround_nodes` adds what else there is. This is where a line's time goes: arrays
-    are cut to the line first, so that an index that starts at 0 is known not to be negative, and the loop calls nothing.
+    Returns the force on A's end and on B's [N], without weight. Nodes have the pull of a point Earth; `surround_nodes` adds
+    what else there is.
     """
-    lines, gravity = plant.lines, plant.surroundings.gravity
-    nodes, feed = lines.nodes[k], feeds_at(plant) + 2 * k
-    warm = temperatures_at(plant) + lines.warm[k] if lines.warm[k + 1] > lines.warm[k] else -1
+    lines, gravity, nodes = plant.lines, plant.surroundings.gravity, plant.lines.nodes[k]
     gm = gravity.gm if gravity.table.shape[0] == 0 else 0.0
     here, there = z[base : base + 6 * nodes], out[base : base + 6 * nodes]
-    rests, linear_mass = lines.rest[row : row + nodes + 1], lines.linear_mass[row : row + nodes + 1]
     stiffness, damping = lines.stiffness[row : row + nodes + 1], lines.damping[row : row + nodes + 1]
+    rests, masses = shared.rest[row : row + nodes + 1], shared.mass[row : row + nodes + 1]
     tensions = shared.tension[row : row + nodes + 1]
-    p0, v0, place_b, speed_b = ends
-    behind, half, mass_out = NOTHING, 0.0, 0.0  # what the segment behind does to the point, and half its mass
-    end_a, mass_a = NOTHING, 0.0
-    for j in range(nodes + 1):
-        if j < nodes:
-            p1, v1, cold, rest_rate = three(here, 6 * j), three(here, 6 * j + 3), rests[j], 0.0
-        else:
-            p1, v1, cold, rest_rate = place_b, speed_b, z[feed], z[feed + 1]
-        rest = cold
-        if warm >= 0:
-            grown = 1.0 + lines.expansion[k] * (z[warm + j] - lines.reference[k])
-            rest, rest_rate = cold * grown, rest_rate * grown
-        chord = sub(p1, p0)
-        tension, per_metre = tighten(chord, sub(v1, v0), rest, rest_rate, stiffness[j], damping[j])
-        tensions[j] = tension
-        ahead = scale(per_metre, chord)
-        next_half = 0.5 * linear_mass[j] * cold
-        mass_out += 2.0 * next_half
-        if j == 0:
-            end_a, mass_a = ahead, next_half
-        else:
-            square = dot(p0, p0)
-            store(there, 6 * j - 6, v0)
-            weight = scale(-gm / (square * sqrt(square)), p0)
-            store(there, 6 * j - 3, axpy(1.0 / (half + next_half), sub(ahead, behind), weight))
-        behind = ahead
-        half = next_half
-        p0, v0 = p1, v1
-    return end_a, mass_a, scale(-1.0, behind), half, mass_out
+    rate_b = measure(k, z, row, plant, shared)
+    place_a, speed_a, place_b, speed_b = ends
+    if nodes == 0:
+        chord = sub(place_b, place_a)
+        tensions[0], per_metre = tighten(chord, sub(speed_b, speed_a), rests[0], rate_b, stiffness[0], damping[0])
+        on_a = scale(per_metre, chord)
+        return on_a, scale(-1.0, on_a)
+    chord = sub(three(here, 0), place_a)
+    tensions[0], per_metre = tighten(chord, sub(three(here, 3), speed_a), rests[0], 0.0, stiffness[0], damping[0])
+    on_a = scale(per_metre, chord)
+    behind = pull_inside(
+        here, rests[:nodes], masses[:nodes], stiffness[:nodes], damping[:nodes], gm, on_a, tensions[:nodes], there
+    )
+    last = 6 * nodes - 6
+    r, v = three(here, last), three(here, last + 3)
+    chord = sub(place_b, r)
+    tensions[nodes], per_metre = tighten(chord, sub(speed_b, v), rests[nodes], rate_b, stiffness[nodes], damping[nodes])
+    ahead = scale(per_metre, chord)
+    store(there, last, v)
+    store(there, last + 3, node_rate(ahead, behind, 0.5 * (masses[nodes - 1] + masses[nodes]), r, gm))
+    return on_a, scale(-1.0, ahead)
 
 
 @inner
@@ -221,7 +221,7 @@ def surround_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out):
     Returns the forces of air and current on A's end and on B's [N], inertial axes.
     """
     lines, gravity, ambient = plant.lines, plant.surroundings.gravity, shared.ambient
-    nodes, feed = lines.nodes[k], feeds_at(plant) + 2 * k
+    nodes = lines.nodes[k]
     if gravity.table.shape[0] > 0 or gravity.j2 != 0.0:
         for j in range(nodes):
             at = base + 6 * j
@@ -229,17 +229,17 @@ def surround_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out):
     if lines.exposed[k] == 0:
         return NOTHING, NOTHING
     p0, v0, place_b, speed_b = ends
-    on_a, behind, half = NOTHING, NOTHING, 0.0
+    masses = shared.mass[row : row + nodes + 1]
+    on_a, behind = NOTHING, NOTHING
     for j in range(nodes + 1):
         at = base + 6 * j
         p1, v1 = (three(z, at), three(z, at + 3)) if j < nodes else (place_b, speed_b)
         push = scale(0.5, segment_load(t, k, row + j, p0, v0, p1, v1, dcm_ei, lines, ambient))
-        next_half = 0.5 * lines.linear_mass[row + j] * (lines.rest[row + j] if j < nodes else z[feed])
         if j == 0:
             on_a = push
         else:
-            store(out, at - 3, axpy(1.0 / (half + next_half), add(behind, push), three(out, at - 3)))
-        behind, half = push, next_half
+            store(out, at - 3, axpy(2.0 / (masses[j - 1] + masses[j]), add(behind, push), three(out, at - 3)))
+        behind = push
         p0, v0 = p1, v1
     return on_a, behind
 
@@ -256,7 +256,8 @@ def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
     nodes, row = lines.nodes[k], lines.first[k] + k
     base, feed = nodes_at(plant) + 6 * lines.first[k], feeds_at(plant) + 2 * k
     ends = (place_a, speed_a, place_b, speed_b)
-    end_a, mass_a, end_b, half, mass_out = pull_nodes(k, z, ends, row, base, plant, shared, out)
+    end_a, end_b = pull_nodes(k, z, ends, row, base, plant, shared, out)
+    half_a, half_b = 0.5 * shared.mass[row], 0.5 * shared.mass[row + nodes]
     on_a, on_b = surround_nodes(t, k, z, ends, row, base, dcm_ei, plant, shared, out)
     end_a, end_b = add(end_a, on_a), add(end_b, on_b)
     if nodes == 0:
@@ -282,17 +283,18 @@ def line_rates(t, k, z, start, dcm_ei, plant, inputs, shared, log, out):
         if nodes == 0:
             end_a = add(end_a, on_node)
         else:
-            mass = half + 0.5 * lines.linear_mass[row + nodes - 1] * lines.rest[row + nodes - 1]
             at = base + 6 * nodes - 3
-            store(out, at, axpy(1.0 / mass, on_node, three(out, at)))
-        gone = mass_out - lines.stored[k]
+            store(out, at, axpy(2.0 / (shared.mass[row + nodes - 1] + shared.mass[row + nodes]), on_node, three(out, at)))
+        gone = -lines.stored[k]
+        for j in range(nodes + 1):
+            gone += shared.mass[row + j]
         moving = linear_mass * z[feed + 1], linear_mass * out[feed + 1]
         carry_to_attachment(b, gone, moving, point_b, place_b, speed_b, q_b, z, dcm_ei, surroundings, log, outer)
         shared.end_mass[b, 0] -= gone
-    weight_a = weight_per_mass(place_a, dcm_ei, surroundings) if mass_a > 0.0 else NOTHING
-    weight_b = weight_per_mass(place_b, dcm_ei, surroundings) if half > 0.0 else NOTHING
-    load_end(a, mass_a, point_a, slide_a, end_a, weight_a, q_a, three(z, TANGENT * a + 9), log, outer, shared.end_mass)
-    load_end(b, half, point_b, slide_b, end_b, weight_b, q_b, three(z, TANGENT * b + 9), log, outer, shared.end_mass)
+    weight_a = weight_per_mass(place_a, dcm_ei, surroundings) if half_a > 0.0 else NOTHING
+    weight_b = weight_per_mass(place_b, dcm_ei, surroundings) if half_b > 0.0 else NOTHING
+    load_end(a, half_a, point_a, slide_a, end_a, weight_a, q_a, three(z, TANGENT * a + 9), log, outer, shared.end_mass)
+    load_end(b, half_b, point_b, slide_b, end_b, weight_b, q_b, three(z, TANGENT * b + 9), log, outer, shared.end_mass)
 
 
 @inner
