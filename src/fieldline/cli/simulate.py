@@ -68,6 +68,9 @@ def simulate(
     _check_telemetry(flown, job)
     outputs = [*job.paths.values(), *([job.telemetry] if job.telemetry else [])]
     refuse_inputs(outputs, [flown.folder / name for name in flown.files()])
+    for warning in flown.check():
+        if not quiet:
+            print(f"warning: {warning}", file=sys.stderr)
     code, message = 0, ""
     with progress_on_stderr(quiet) as progress:
         try:

@@ -106,9 +106,28 @@ class Line(Record):
                     f"must be at least what is out, rest_length_m = {self.rest_length_m:g} m; it is the whole line",
                 )
             )
+        if self.reel is not None and self.reel.shortest_length_m > self.rest_length_m:
+            found.append(
+                (
+                    "reel.shortest_length_m",
+                    f"must be at most what is out at the start, rest_length_m = {self.rest_length_m:g} m; "
+                    f"got {self.reel.shortest_length_m:g} m",
+                )
+            )
         if found:
             raise RecordError(found)
         return self
+
+    @property
+    def mass_on_reel_kg(self) -> float:
+        """Mass of what its reel holds at the start [kg]: that of the parts beyond rest_length_m."""
+        found, place = 0.0, 0.0
+        for part in (*self.stretch, self):
+            end = self.whole_length_m if part is self else place + part.length_m
+            linear = self.mass_per_length_kg_m if part.mass_per_length_kg_m is None else part.mass_per_length_kg_m
+            found += linear * max(0.0, end - max(place, self.rest_length_m))
+            place = end
+        return found
 
     @property
     def whole_length_m(self) -> float:

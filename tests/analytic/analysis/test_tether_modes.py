@@ -204,6 +204,11 @@ def test_libration_slows_with_its_amplitude():
 def test_what_has_no_modes_is_refused():
     with pytest.raises(InputError, match="upper_altitude_m"):
         fl.tether_modes(*LINE[:5], -5.0)
+    for gm in (-1.0, 3.986e5, float("nan")):
+        with pytest.raises(InputError, match="gm_m3_s2"):
+            fl.tether_modes(*LINE, gm_m3_s2=gm)
+    with pytest.raises(InputError, match="length_m must be 1 m or more"):
+        fl.tether_modes(1e-3, *LINE[1:])
     with pytest.raises(InputError, match="500"):
         fl.tether_modes(*LINE, 501)
     with pytest.raises(InputError, match="above zero for every material"):

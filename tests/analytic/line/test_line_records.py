@@ -92,3 +92,39 @@ def test_a_law_needs_a_circuit_that_listens():
         Scenario.from_dict(made)
     made["line"][0]["circuit"]["commanded"] = True
     assert Scenario.from_dict(made).line[0].circuit.commanded
+
+
+REEL = {"nodes": 4, "mass_per_length_kg_m": 0.01}
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        (REEL | {"reel": {"total_length_m": 300.0, "shortest_length_m": 150.0}}, "reel.shortest_length_m must be at most"),
+        (REEL | {"reel": {"total_length_m": 200.0}}, "leaves 1 kg of line on the reel"),
+        (
+            REEL | {"reel": {"total_length_m": 150.0}, "stretch": [{"length_m": 140.0, "mass_per_length_kg_m": 0.03}]},
+            "leaves 1.3 kg of line on the reel",
+        ),
+    ],
+)
+def test_reels(line, words):
+    with pytest.raises(InputError) as refused:
+        scenario(**line)
+    assert words in str(refused.value)
+
+
+def test_a_reel_that_its_body_can_bear():
+    assert scenario(**REEL, reel={"total_length_m": 199.0}).line[0].mass_on_reel_kg == pytest.approx(0.99)
+
+
+def test_a_skiprope_that_throws_the_ends_together_is_warned_of():
+    (warning,) = scenario(**REEL, start={"skiprope_amplitude_m": 10.0}).check()
+    assert "skiprope_amplitude_m = 10 m" in warning and "falls slack" in warning
+    assert scenario(**REEL, start={"skiprope_amplitude_m": 0.1}).check() == []
+
+
+def test_a_body_below_the_ground():
+    deep = scenario().replace(**{"body.1.offset_o_m": [0.0, 0.0, 6e5], "line.0.rest_length_m": 6e5})
+    with pytest.raises(InputError, match=r'body\[1\].*"b" starts 100 km below the ground: mend its orbit or offset_o_m'):
+        deep.check()

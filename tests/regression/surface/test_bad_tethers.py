@@ -65,6 +65,9 @@ def law(t, measurement, memory, params):
 """
 
 
+WAVED = "[line.start]\nskiprope_amplitude_m = 100.0\n"
+
+
 @pytest.fixture
 def fly(tmp_path, monkeypatch, capsys):
     """Fly a pair in a folder of its own; (exit code, stderr, what was kept or None), never with a traceback."""
@@ -138,3 +141,10 @@ def test_what_goes_wrong_in_flight_is_said_and_what_was_flown_is_kept(fly, comma
 def test_a_line_that_is_too_stiff_for_explicit_steps_flies_with_the_method_that_is_told(fly):
     code, err, kept = fly(integrator='method = "rosenbrock"')
     assert code == 0 and kept.attrs["complete"] == 1, err
+
+
+def test_a_warning_is_told_where_the_run_is_asked_for(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pair.toml").write_text(PAIR.format(**USUAL | {"seconds": 2.0, "line": WAVED}))
+    assert main(["simulate", "pair.toml", "--out", "pair"]) == 0
+    assert "warning: line[0].start.skiprope_amplitude_m = 100 m" in " ".join(capsys.readouterr().err.split())

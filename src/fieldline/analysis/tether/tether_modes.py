@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 MOST_NODES = 500  # the cost grows with the cube: 500 nodes take a quarter of a minute
 SHOWN = 13  # modes of each family that are told of a continuum: those that its polynomials hold to nine digits or more
 LENGTHS = ("unstretched", "stretched")
+GM_BOUNDS = (3.98e14, 3.99e14)  # [m^3/s^2], with what older programs used
+SHORTEST_M = 1.0  # below it the pulls of points so near to each other have no digits left
 
 
 def tether_modes(
@@ -89,11 +91,17 @@ def hanging_line(
 ) -> Hanging:
     """The state of rest alone, arguments as of `tether_modes`; `anchor`: what is at radius_m [m] from the Earth's centre."""
     count = _nodes(nodes)
+    gm = positive("gm_m3_s2", gm_m3_s2, "m^3/s^2")
+    if not GM_BOUNDS[0] <= gm <= GM_BOUNDS[1]:
+        bounds = " to ".join(f"{one:g}" for one in GM_BOUNDS)
+        raise InputError(f"gm_m3_s2 must be the Earth's, {bounds} m^3/s^2; got {gm:g}. Is it in km^3/s^2? Multiply by 1e9.")
     lower, upper = (
         positive(name, value, "kg", zero=True)
         for name, value in (("lower_mass_kg", lower_mass_kg), ("upper_mass_kg", upper_mass_kg))
     )
     stretches = stretches_of(length_m, mass_per_length_kg_m, axial_stiffness_n, massless=not count)
+    if stretches.length.sum() < SHORTEST_M:
+        raise InputError(f"length_m must be {SHORTEST_M:g} m or more together; got {stretches.length.sum():g} m.")
     if length not in LENGTHS:
         raise InputError(f'length is "{length}"; {nearest(str(length), LENGTHS)}')
     radius = positive("radius_m", radius_m, "m")

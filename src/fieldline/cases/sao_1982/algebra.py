@@ -32,7 +32,7 @@ from fieldline.cases.sao_1982.runs import (
     SUBSATELLITE_KG,
     TRANSVERSE_KG_M2,
 )
-from fieldline.errors import InputError
+from fieldline.errors import InputError, shown
 
 MOST_ROWS = 20_000
 PUSH_RAD = 1e-4
@@ -82,8 +82,7 @@ def stationary(
         tension_n=tension_n,
         orbital_rate_rad_s=orbital_rate_rad_s,
     )
-    spins = np.geomspace(1e-4, 1.0, 200) if spin_rad_s is None else np.atleast_1d(np.asarray(spin_rad_s, dtype=float))
-    _few(spins)
+    spins = _few("spin_rad_s", np.geomspace(1e-4, 1.0, 200) if spin_rad_s is None else spin_rad_s)
     data = stability_map(subsatellite, spins, [subsatellite.offset_m]).isel(offset=0).drop_vars("critical_spin")
     first = np.array([first_order_angles(subsatellite, float(spin)) for spin in spins])
     words = {"units": "rad", "long_name": "angle to first order of (C - A) n^2, (26)"}
@@ -123,8 +122,10 @@ def stability(
         tension_n=tension_n,
         orbital_rate_rad_s=orbital_rate_rad_s,
     )
-    degrees = np.arange(1.0, 360.0, 2.0) if theta_deg is None else np.atleast_1d(np.asarray(theta_deg, dtype=float))
-    _few(degrees)
+    degrees = _few("theta_deg", np.arange(1.0, 360.0, 2.0) if theta_deg is None else theta_deg)
+    straight = degrees[np.abs(np.remainder(degrees + 90.0, 180.0) - 90.0) < 1e-3]
+    if straight.size:
+        raise InputError(f"theta_deg must be no multiple of 180: no finite spin stands there; got {straight[0]:.10g}.")
     theta, n = np.radians(degrees), subsatellite.orbital_rate_rad_s
     p2, p1, p0 = characteristic_coefficients(subsatellite.kappa, theta)
     mu, frequency = squared_exponents(subsatellite.kappa, theta), frequencies(subsatellite, theta)
@@ -165,8 +166,10 @@ def stability_chart(
         tension_n=tension_n,
         orbital_rate_rad_s=orbital_rate_rad_s,
     )
-    spins = np.geomspace(2e-4, 0.05, 120) if spin_rad_s is None else spin_rad_s
-    offsets = np.geomspace(1e-3, 2.0, 100) if offset_m is None else offset_m
+    spins = _few("spin_rad_s", np.geomspace(2e-4, 0.05, 120) if spin_rad_s is None else spin_rad_s)
+    offsets = _few("offset_m", np.geomspace(1e-3, 2.0, 100) if offset_m is None else offset_m)
+    if not (offsets > 0.0).all():
+        raise InputError(f"offset_m must be above zero [m]; got {offsets.min():g}.")
     data = stability_map(subsatellite, spins, offsets)
     data.attrs = _attributes(subsatellite, "sao_1982_stability_chart", "Stability over spin and offset", settings)
     return data
@@ -193,10 +196,15 @@ def _drift(values: np.ndarray) -> float:
     return float(np.ptp(values) / np.abs(values).max())
 
 
-def _few(values: np.ndarray) -> None:
-    """InputError for a list that is none, or too long."""
+def _few(name: str, given) -> np.ndarray:
+    """The numbers that were given, or InputError for a list that is none, or too long."""
+    try:
+        values = np.atleast_1d(np.asarray(given, dtype=float))
+    except (TypeError, ValueError):
+        values = np.empty(0)
     if values.ndim != 1 or not 0 < values.size <= MOST_ROWS or not np.isfinite(values).all():
-        raise InputError(f"give a list of 1 to {MOST_ROWS} finite numbers; got shape {values.shape}.")
+        raise InputError(f"{name} must be a number or a list of 1 to {MOST_ROWS} finite numbers; got {shown(repr(given))}.")
+    return values
 
 
 def _attributes(body: SpinningSubsatellite, case: str, title: str, settings: dict) -> dict:

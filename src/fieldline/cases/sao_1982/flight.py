@@ -22,7 +22,7 @@ import numpy as np
 from fieldline.cases.erbs_like import number
 from fieldline.cases.sao_1982.dumbbell import Dumbbell, Strung, critical_damping, dumbbell, natural_length
 from fieldline.cases.sao_1982.euler_angles import body_rate, direction_cosines
-from fieldline.cases.sao_1982.surroundings import EARTH_RADIUS_M, GM_M3_S2, J2, load_parameters
+from fieldline.cases.sao_1982.surroundings import EARTH_RADIUS_M, GM_M3_S2, J2, NO_AIR, load_parameters
 from fieldline.errors import InputError, nearest
 from fieldline.frames.attitude import quaternion_from_dcm
 
@@ -30,6 +30,7 @@ SOURCE = "Smithsonian Astrophysical Observatory (1982), NASA-CR-170721"
 PLACEMENTS = ("attachment", "attachment-rigid", "centre")
 HERE = "fieldline.cases.sao_1982"
 LINE = "tether"
+MOST_STRAIN = 0.2
 OTHER_AREAS = ("upper_drag_area_m2", "line_drag_area_m2")  # of air, beside the subsatellite's
 START_UTC = "1982-10-01T00:00:00Z"  # gravity is a point's: the date plays no part
 EXACT = {
@@ -119,6 +120,11 @@ def line_record(pair: Pair, length_m: float) -> dict:
     """The line from the subsatellite up, of the length that balances its tension."""
     tension = pair.dumbbell.tension_n if pair.strung is None else float(pair.strung.tension_n.mean())
     rest = natural_length(length_m, tension, pair.stiffness_n)
+    if tension > MOST_STRAIN * pair.stiffness_n:
+        raise InputError(
+            f"stiffness_n = {pair.stiffness_n:g} N is too soft for a tension of {tension:.4g} N, which would stretch the line by "
+            f"{100.0 * tension / pair.stiffness_n:.3g} %: give {tension / MOST_STRAIN:.4g} N or more."
+        )
     found = {
         "name": LINE,
         "from_body": "subsatellite",
@@ -213,6 +219,8 @@ def _beside(places, velocities) -> dict:
 
 def _own_air(air: dict | None, area: str | None) -> dict | None:
     """The air of one body: `area` names its drag area among what is given, None the subsatellite's; None for no air."""
+    if air is not None and not isinstance(air, dict):
+        raise InputError(f"air must be a dict of {', '.join((*NO_AIR, *OTHER_AREAS))}, or None; got {air!r}.")
     if not air:
         return air
     own = {key: value for key, value in air.items() if key not in OTHER_AREAS}
@@ -231,6 +239,8 @@ def _line_air(air: dict | None, nodes: int) -> dict | None:
 
 def _loads(function: str, mass_kg: float, oblate: bool, anomaly: dict | None, air: dict | None, **settings) -> list[dict]:
     """What surrounds a body or a node besides the pull of a point, as a load."""
+    if not isinstance(oblate, bool):
+        raise InputError(f"oblate must be True or False; got {oblate!r}.")
     if not oblate and anomaly is None and air is None:
         return []
     parameters = load_parameters(mass_kg, j2=J2 if oblate else 0.0, anomaly=anomaly, air=air or None, **settings)

@@ -25,6 +25,7 @@ SHUTTLE_KG, SUBSATELLITE_KG = 86363.0, 100.0
 LENGTH_M, ALTITUDE_M, OFFSET_M = 20e3, 220e3, 0.5
 AXIAL_KG_M2, TRANSVERSE_KG_M2 = 2e5, 1e5
 STIFFNESS_N = 2.2e5
+FASTEST_RAD_S = 2000.0
 PRINTED_SPIN_RAD_S = -0.04919339283
 
 
@@ -87,8 +88,13 @@ def spin(
     )
     # An attachment on the far side of the axis is the study's branch above 180 deg, seen from below the tether.
     stationary = spin_for_angle(body, theta if branch == "hanging" else -theta)
-    about = stationary if spin_rad_s is None else number("spin_rad_s", spin_rad_s, -100.0, 100.0)
-    inertia = (transverse_inertia_kg_m2, transverse_inertia_kg_m2, axial_inertia_kg_m2)
+    about = float(stationary) if spin_rad_s is None else number("spin_rad_s", spin_rad_s, -100.0, 100.0)
+    if abs(about) > FASTEST_RAD_S:
+        raise InputError(
+            f"a spin of {about:.3g} rad/s would stand at theta_deg = {theta_deg:g} with offset_m = {offset_m:g}, too fast to be "
+            f"followed: {FASTEST_RAD_S:g} is the most. Take a larger tilt, a smaller offset, or give spin_rad_s."
+        )
+    inertia = _inertia(axial_inertia_kg_m2, transverse_inertia_kg_m2)
     pair = Pair(two, inertia, (0.0, 0.0, BRANCHES[branch] * offset_m), stiffness_n, damping, strung=whole)
     start = turning_start(theta, 0.5 * np.pi, 0.0, 0.0, two.orbital_rate_rad_s, about, placement)
     scenario = scenario_of(
@@ -129,7 +135,7 @@ def thruster(
     settings = dict(locals())
     whole = strung(pair_at(ALTITUDE_M, SUBSATELLITE_KG, SHUTTLE_KG, LENGTH_M), nodes, line_mass_kg, GM_M3_S2)
     two = whole.dumbbell
-    inertia = (transverse_inertia_kg_m2, transverse_inertia_kg_m2, axial_inertia_kg_m2)
+    inertia = _inertia(axial_inertia_kg_m2, transverse_inertia_kg_m2)
     pair = Pair(two, inertia, (0.0, 0.0, number("offset_m", offset_m, 1e-6)), stiffness_n, damping, strung=whole)
     right = 0.5 * np.pi
     scenario = scenario_of(
@@ -141,6 +147,18 @@ def thruster(
         torque_b_n_m=(0.0, 0.0, number("torque_n_m", torque_n_m, -1e6, 1e6)),
     )
     return _flown(scenario, pair, "sao_1982_thruster", f"Thruster of {torque_n_m:g} N m about the tether", settings)
+
+
+def _inertia(axial_kg_m2: float, transverse_kg_m2: float) -> tuple[float, float, float]:
+    """Principal moments of a symmetric rigid body [kg m^2]."""
+    axial = number("axial_inertia_kg_m2", axial_kg_m2, 1e-12, 1e15)
+    transverse = number("transverse_inertia_kg_m2", transverse_kg_m2, 1e-12, 1e15)
+    if axial > 2.0 * transverse * (1.0 + 1e-12):
+        raise InputError(
+            f"axial_inertia_kg_m2 must be at most twice transverse_inertia_kg_m2 = {transverse:g}, as of every rigid body; "
+            f"got {axial:g}."
+        )
+    return (transverse, transverse, axial)
 
 
 class AnnexRun(NamedTuple):

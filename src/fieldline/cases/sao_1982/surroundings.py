@@ -127,6 +127,8 @@ def _whole(name: str, given, pattern: dict[str, float]) -> dict[str, float]:
     """The given numbers in the pattern's order, or the pattern."""
     if given is None:
         return pattern
+    if not isinstance(given, dict):
+        raise InputError(f"{name} must be a dict of {', '.join(pattern)}, or None; got {given!r}.")
     for key in given:
         if key not in pattern:
             raise InputError(f'unknown key "{key}" in {name}; {nearest(str(key), pattern)}')

@@ -112,6 +112,20 @@ def _lines(scenario) -> Found:
             body = known.get(getattr(line, f"{end}_body"))
             if body is not None and body.kind == "point" and any(getattr(line, f"{end}_point_b_m")):
                 yield f"line[{k}].{end}_point_b_m", f'is off "{body.name}", a point mass, which does not turn; leave it out'
+    yield from _reels(scenario)
+
+
+def _reels(scenario) -> Found:
+    """What is on reels is part of their body's mass."""
+    for body in scenario.body:
+        reeled = [(k, one) for k, one in enumerate(scenario.line) if one.reel is not None and one.to_body == body.name]
+        held = sum(line.mass_on_reel_kg for _, line in reeled)
+        if held >= body.mass_kg:
+            yield (
+                f"line[{reeled[0][0]}].reel.total_length_m",
+                f'leaves {held:.6g} kg of line on the reel of "{body.name}", whose mass_kg = {body.mass_kg:g} holds it too; '
+                "give a shorter line, a lighter one, or a larger mass_kg",
+            )
 
 
 def _software(scenario) -> Found:

@@ -43,8 +43,12 @@ def least_stretch(scenario, line, rate: float) -> float:
     from fieldline.simulate.assembly.lines import strand_of
 
     strand = strand_of(line.model_copy(update={"reel": None, "rest_length_m": line.whole_length_m}))
+    return rest_pull(scenario, line, strand, rate) * float((strand.rest / strand.stiffness).min())
+
+
+def rest_pull(scenario, line, strand, rate: float) -> float:
+    """T of (1) [N] of a strand of a line between its bodies."""
     segments = strand.linear_mass * strand.rest
     ends = [scenario.body[scenario.index_of(name)].mass_kg for name in (line.from_body, line.to_body)]
     masses = np.add(ends, 0.5 * segments[[0, -1]])
-    pull = 3.0 * rate**2 * float(strand.rest.sum()) * float(masses[0] * masses[1] / masses.sum())
-    return pull * float((strand.rest / strand.stiffness).min())
+    return 3.0 * rate**2 * float(strand.rest.sum()) * float(masses[0] * masses[1] / masses.sum())

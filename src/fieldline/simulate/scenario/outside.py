@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fieldline.constants import EARTH_EQUATORIAL_RADIUS_M
 from fieldline.errors import InputError, nearest, shown
 from fieldline.records.words import joined
 from fieldline.simulate.scenario.checks import actuators_missing
@@ -16,6 +17,7 @@ from fieldline.simulate.scenario.coarseness import orbit_too_coarse, rather_coar
 
 MOST_STEPS = 1e10
 MOST_STRAIN = 0.2  # of a line at the start: beyond it two keys do not fit each other
+VIOLENT = 20.0  # tensions of the state of rest: a wave at the start that asks for more throws the ends at each other
 
 
 def check(scenario) -> list[str]:
@@ -26,6 +28,7 @@ def check(scenario) -> list[str]:
     found += _laws(scenario)
     if states is not None:
         found += _span(scenario, states)
+        found += _buried(scenario, states)
         found += _overstretched(scenario, states)
     if found:
         texts = [joined(path, text) for path, text in found]
@@ -99,6 +102,42 @@ def _overstretched(scenario, states) -> Iterator[tuple[str, str]]:
                 f"must be about the distance of its ends: it is {line.rest_length_m:g} m, and they start {distance:g} m apart, "
                 f"which would stretch it by {100.0 * strain:.3g} %, to {strain * line.stiffness_n:.3g} N. Give [body.hang] to "
                 "one of its bodies, which puts it where the line is at rest, or mend offset_o_m.",
+            )
+
+
+def _buried(scenario, states) -> Iterator[tuple[str, str]]:
+    """Bodies start above the ground; the first one's orbit is looked at elsewhere."""
+    for k, (body, (position, _)) in enumerate(zip(scenario.body, states, strict=True)):
+        height = float(np.linalg.norm(position)) - EARTH_EQUATORIAL_RADIUS_M
+        if k > 0 and height < 0.0:
+            start = "the line on which it hangs" if body.hang is not None else "its orbit or offset_o_m"
+            yield (
+                f"body[{k}]",
+                f'"{body.name}" starts {-1e-3 * height:.6g} km below the ground: mend {start}, or raise the orbit.',
+            )
+
+
+def _waves(scenario) -> Iterator[str]:
+    """A skiprope that stretches its line far more than it is at rest."""
+    from fieldline.simulate.assembly.lines import strand_of
+    from fieldline.simulate.scenario.line_tolerance import rest_pull
+    from fieldline.simulate.scenario.states import period_s
+
+    rate = 2.0 * np.pi / period_s(*_states(scenario)[0])
+    for k, line in enumerate(scenario.line):
+        if line.start is None or line.start.skiprope_amplitude_m == 0.0:
+            continue
+        strand = strand_of(line)
+        slope = line.start.skiprope_mode * np.pi * line.start.skiprope_amplitude_m / float(strand.rest.sum())
+        pull = 0.25 * slope**2 * float(strand.rest.sum() / (strand.rest / strand.stiffness).sum())
+        calm = rest_pull(scenario, line, strand, rate)
+        if pull > VIOLENT * calm:
+            amplitude = line.start.skiprope_amplitude_m
+            most = amplitude * np.sqrt(VIOLENT * calm / pull)
+            yield (
+                f"line[{k}].start.skiprope_amplitude_m = {amplitude:g} m makes the line longer by a part in "
+                f"{4.0 / slope**2:.2g}, which pulls its ends with {pull:.2g} N where {calm:.2g} N hold it at rest: they are "
+                f"thrown at each other and the line falls slack. {most:.2g} m or less, or a softer line, keep it taut longer."
             )
 
 
@@ -182,6 +221,7 @@ def _laws(scenario) -> Iterator[tuple[str, str]]:
 
 def _warnings(scenario) -> Iterator[str]:
     """What runs, but perhaps not as meant."""
+    yield from _waves(scenario)
     for k, body in enumerate(scenario.body):
         coarse = rather_coarse(scenario, body)
         if coarse:
