@@ -304,6 +304,7 @@ def test_every_annex_run_has_a_name_that_works():
     ("call", "words"),
     [
         (lambda: spin(0.0), "theta_deg"),
+        (lambda: spin(200.0), 'branch = "inverted" and theta_deg = 20'),
         (lambda: spin(branch="hangin"), "hanging"),
         (lambda: spin(placement="center"), "centre"),
         (lambda: spin(damping="criticl"), "critical"),

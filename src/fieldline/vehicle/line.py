@@ -16,6 +16,7 @@ from fieldline.vehicle.user_load import UserLoad
 
 ORIGIN = (0.0, 0.0, 0.0)
 MOST_NODES = 2000
+SHRUNK, GROWN = 0.5, 2.0  # of a line's length, by its temperature at the start
 
 
 class Stretch(Record):
@@ -93,6 +94,11 @@ class Line(Record):
             found.append(("load", "acts on nodes, and the line has none; give nodes"))
         if self.heat is not None and (self.mass_per_length_kg_m == 0.0 or self.diameter_m == 0.0):
             found.append(("heat", "needs mass_per_length_kg_m and diameter_m above zero: what warms up, and what it is lit on"))
+        if self.heat is not None and not SHRUNK < self.heat.growth_at_start < GROWN:
+            told = f"makes the line {self.heat.growth_at_start:.3g} times as long at start_temperature_k as at the reference"
+            found.append(("heat.expansion_1_k", f"{told}; between {SHRUNK:g} and {GROWN:g} times is possible. Is it in 1/K?"))
+        if self.circuit is not None and self.circuit.temperature_coefficient_1_k != 0.0 and self.heat is None:
+            found.append(("circuit.temperature_coefficient_1_k", "needs [line.heat], which gives the line a temperature"))
         if self.circuit is not None and self.circuit.mode == "bare" and self.diameter_m == 0.0:
             found.append(("circuit", "needs diameter_m above zero: a bare line collects over its surface"))
         whole = self.whole_length_m

@@ -20,3 +20,8 @@ class LineHeat(Record):
         default=293.15, gt=0.0, le=2000.0, description="temperature at which the unstretched length holds [K]"
     )
     start_temperature_k: float = Field(default=293.15, gt=0.0, le=2000.0, description="temperature at the start [K]")
+
+    @property
+    def growth_at_start(self) -> float:
+        """Unstretched length at the start over that at the reference temperature [-]."""
+        return 1.0 + self.expansion_1_k * (self.start_temperature_k - self.reference_temperature_k)

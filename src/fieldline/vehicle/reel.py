@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from fieldline.records import Record
+from fieldline.records import Record, RecordError
 
 
 class Reel(Record):
@@ -30,3 +30,14 @@ class Reel(Record):
     effective_mass_kg: float = Field(
         default=5.0, gt=0.0, description="in mode tension: inertia of the drum over its radius squared [kg]"
     )
+
+    @model_validator(mode="after")
+    def _within_its_limits(self):
+        """What holds until a law speaks is no more than what a law may ask for."""
+        if self.mode == "rate" and abs(self.rate_m_s) > self.rate_max_m_s:
+            raise RecordError([("rate_m_s", f"must be within rate_max_m_s = {self.rate_max_m_s:g} m/s; got {self.rate_m_s:g}")])
+        if self.mode == "tension" and self.tension_n > self.tension_max_n:
+            raise RecordError(
+                [("tension_n", f"must be at most tension_max_n = {self.tension_max_n:g} N; got {self.tension_n:g}")]
+            )
+        return self

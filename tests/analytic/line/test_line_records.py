@@ -114,6 +114,44 @@ def test_reels(line, words):
     assert words in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ({"reel": {"total_length_m": 150.0, "rate_m_s": -30.0}}, "reel.rate_m_s must be within rate_max_m_s = 20 m/s"),
+        ({"reel": {"total_length_m": 150.0, "mode": "tension", "tension_n": 1500.0}}, "tension_n must be at most tension_max_n"),
+        ({"from_joint_damping_n_m_s": 1.0}, 'line[0].from_joint_damping_n_m_s: acts on "a", a point mass'),
+        ({"to_joint_damping_n_m_s": 1.0}, 'line[0].to_joint_damping_n_m_s: acts on "b", a point mass'),
+        (
+            {"circuit": {"mode": "series", **WIRE, "temperature_coefficient_1_k": 0.004}},
+            "temperature_coefficient_1_k needs [line.heat]",
+        ),
+        (
+            REEL
+            | {"diameter_m": 1e-3}
+            | {
+                "heat": {
+                    "absorptivity": 0.5,
+                    "emissivity": 0.5,
+                    "specific_heat_j_kg_k": 900.0,
+                    "expansion_1_k": -1e-3,
+                    "start_temperature_k": 1500.0,
+                }
+            },
+            "heat.expansion_1_k: makes the line -0.207 times as long",
+        ),
+    ],
+)
+def test_keys_that_cannot_do_what_they_say(line, words):
+    with pytest.raises(InputError) as refused:
+        scenario(**line)
+    assert words in str(refused.value)
+
+
+def test_a_line_whose_ends_are_in_one_place():
+    with pytest.raises(InputError, match=r"line\[0\].*both ends in the same place"):
+        scenario().replace(**{"body.1.offset_o_m": [0.0, 0.0, 0.0]}).check()
+
+
 def test_a_reel_that_its_body_can_bear():
     assert scenario(**REEL, reel={"total_length_m": 199.0}).line[0].mass_on_reel_kg == pytest.approx(0.99)
 

@@ -76,7 +76,7 @@ def spin(
     settings = dict(locals())
     if branch not in BRANCHES:
         raise InputError(f'unknown branch "{branch}"; {nearest(str(branch), BRANCHES)}')
-    theta = np.radians(number("theta_deg", theta_deg, 1e-3, 180.0 - 1e-3))
+    theta = _tilt(theta_deg)
     whole = strung(pair_at(altitude_m, lower_mass_kg, upper_mass_kg, length_m), nodes, line_mass_kg, GM_M3_S2)
     two = whole.dumbbell
     body = SpinningSubsatellite(
@@ -147,6 +147,17 @@ def thruster(
         torque_b_n_m=(0.0, 0.0, number("torque_n_m", torque_n_m, -1e6, 1e6)),
     )
     return _flown(scenario, pair, "sao_1982_thruster", f"Thruster of {torque_n_m:g} N m about the tether", settings)
+
+
+def _tilt(theta_deg: float) -> float:
+    """theta [rad]; the study's angles above 180 deg are those of the inverted branch."""
+    given = isinstance(theta_deg, int | float | np.number) and not isinstance(theta_deg, bool)
+    if given and 180.0 < theta_deg < 360.0:
+        raise InputError(
+            f"theta_deg must be a number, 0.001 to 179.999; got {theta_deg:g}. The study's angles above 180 are those of the "
+            f'inverted branch, here branch = "inverted" and theta_deg = {theta_deg - 180.0:g}.'
+        )
+    return float(np.radians(number("theta_deg", theta_deg, 1e-3, 180.0 - 1e-3)))
 
 
 def _inertia(axial_kg_m2: float, transverse_kg_m2: float) -> tuple[float, float, float]:

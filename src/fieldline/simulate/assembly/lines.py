@@ -117,8 +117,7 @@ def strand_of(line) -> Strand:
     out, materials = nodes_out(line), _materials(line)
     rest = np.full(out + 1, spacing(line))
     rest[-1] = last_length(line)
-    heat = line.heat
-    grown = 1.0 if heat is None else 1.0 + heat.expansion_1_k * (heat.start_temperature_k - heat.reference_temperature_k)
+    grown = 1.0 if line.heat is None else line.heat.growth_at_start
     return Strand(grown * rest, materials["stiffness_n"][: out + 1], materials["mass_per_length_kg_m"][: out + 1] / grown)
 
 

@@ -112,6 +112,11 @@ def _lines(scenario) -> Found:
             body = known.get(getattr(line, f"{end}_body"))
             if body is not None and body.kind == "point" and any(getattr(line, f"{end}_point_b_m")):
                 yield f"line[{k}].{end}_point_b_m", f'is off "{body.name}", a point mass, which does not turn; leave it out'
+            if body is not None and body.kind == "point" and getattr(line, f"{end}_joint_damping_n_m_s"):
+                yield (
+                    f"line[{k}].{end}_joint_damping_n_m_s",
+                    f'acts on "{body.name}", a point mass, which does not turn; leave it out',
+                )
     yield from _reels(scenario)
 
 

@@ -92,9 +92,18 @@ def _strains(scenario, states) -> Iterator[tuple[int, float, float]]:
         yield k, distance, distance / line.rest_length_m - 1.0
 
 
+def _together(scenario, states, line) -> bool:
+    """Whether the ends of a line are the same point."""
+    places = [states[scenario.index_of(name)][0] for name in (line.from_body, line.to_body)]
+    return bool(np.array_equal(*places)) and not any((*line.from_point_b_m, *line.to_point_b_m))
+
+
 def _overstretched(scenario, states) -> Iterator[tuple[str, str]]:
-    """A line is about as long as its ends are apart."""
+    """A line is about as long as its ends are apart, and these are not in one place."""
     for k, distance, strain in _strains(scenario, states):
+        if distance == 0.0 and _together(scenario, states, scenario.line[k]):
+            told = "starts with both ends in the same place, and has no direction there; mend offset_o_m of one of its bodies."
+            yield f"line[{k}]", told
         if strain > MOST_STRAIN:
             line = scenario.line[k]
             yield (
