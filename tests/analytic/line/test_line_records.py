@@ -166,3 +166,12 @@ def test_a_body_below_the_ground():
     deep = scenario().replace(**{"body.1.offset_o_m": [0.0, 0.0, 6e5], "line.0.rest_length_m": 6e5})
     with pytest.raises(InputError, match=r'body\[1\].*"b" starts 100 km below the ground: mend its orbit or offset_o_m'):
         deep.check()
+
+
+def test_the_summary_tells_how_a_line_begins():
+    from fieldline.simulate.scenario.summary import summary
+
+    begun = scenario(**REEL, start={"skiprope_amplitude_m": 0.1, "skiprope_sense": "left-handed"})
+    assert "4 nodes, skiprope 0.1 m left-handed" in summary(begun)
+    hung = begun.replace(**{"body.1.offset_o_m": None, "body.1.hang": {"in_plane_deg": 20.0, "in_plane_rate_deg_s": 0.01}})
+    assert "hanging downwards, 20 deg in the plane, 0 deg across it, swinging" in summary(hung)

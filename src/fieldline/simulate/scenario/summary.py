@@ -107,7 +107,17 @@ def _start(body) -> str:
         rate = f"{hypot(*body.rate_deg_s):.4g} deg/s"
     against = "the orbital axes" if body.rate_axes == "orbital" else "the stars"
     place = f", {hypot(*body.offset_o_m):g} m from the first body" if body.offset_o_m is not None else ""
+    if body.hang is not None:
+        place = f", hanging {_swing(body.hang)}"
     return ("a point" if body.kind == "point" else f"{attitude}, {rate} against {against}") + place
+
+
+def _swing(hang) -> str:
+    """How a body hangs on its line."""
+    way = "upwards" if hang.upward else "downwards"
+    angles = f"{hang.in_plane_deg:g} deg in the plane, {hang.out_of_plane_deg:g} deg across it"
+    moves = hang.in_plane_rate_deg_s or hang.out_of_plane_rate_deg_s
+    return f"{way}, {angles}, {'swinging' if moves else 'without rates'}"
 
 
 def _loads(body) -> Iterator[str]:
@@ -158,6 +168,10 @@ def _of_line(line) -> str:
     """What a line has besides length and stiffness."""
     circuit = f"{line.circuit.mode} circuit" if line.circuit else ""
     parts = [f"{line.nodes} nodes" if line.nodes else "", "reel" if line.reel else "", "heat" if line.heat else "", circuit]
+    if line.start is not None and line.start.skiprope_amplitude_m > 0.0:
+        parts.append(f"skiprope {line.start.skiprope_amplitude_m:g} m {line.start.skiprope_sense}")
+    if line.start is not None and line.start.pulse_amplitude_m != 0.0:
+        parts.append(f"pulse {line.start.pulse_amplitude_m:g} m")
     return "".join(f", {part}" for part in parts if part)
 
 
