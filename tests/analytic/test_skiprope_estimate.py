@@ -133,6 +133,43 @@ def test_no_skiprope_is_said():
     assert not told.detected
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("share", [0.6, 1.0, 1.5, 1.8])
+def test_a_bad_first_frequency_ends_at_the_skiprope(method, share):
+    """The same as without one, and said where it was off; from further away the answer names what turns elsewhere."""
+    _, signals, _ = flown()
+    found = estimate_skiprope(signals, tether_length_m=LENGTH, method=method, frequency_hz=share * HZ)
+    assert found.frequency_hz[-1] == pytest.approx(HZ, rel=5e-3)
+    assert any("that were given; what turns at 5 mHz" in note for note in found.notes) == (share != 1.0)
+    none = estimate_skiprope(signals, tether_length_m=LENGTH, method=method, frequency_hz=2.4 * HZ)
+    assert not none.detected and "within a factor of two of 12 mHz" in none.verdict
+    assert any("give --frequency-hz 0.005" in note for note in none.notes)
+
+
+@pytest.mark.parametrize("method", ["harmonic", "kalman"])
+@pytest.mark.parametrize("pendulous_hz", [0.0025, 0.0037, 0.0065])
+def test_a_motion_close_by_is_carried_along(method, pendulous_hz):
+    """Amplitude and sense beside a swing three times as large, within four deviations that are a few per cent at most."""
+    _, signals, _ = flown(duration_s=6000.0, pendulous_frequency_hz=pendulous_hz, bias_deg=(0.5, 0.5, 2.0))
+    found = estimate_skiprope(signals, tether_length_m=LENGTH, method=method, frequency_hz=HZ)
+    rows = found.trusted
+    assert rows.sum() > 300 and (found.sense[rows] == 1).all()
+    off, std = found.amplitude_rad[rows] / np.radians(0.625) - 1.0, found.amplitude_std_rad[rows] / np.radians(0.625)
+    assert np.median(std) < (0.01 if method == "harmonic" else 0.04)
+    assert np.sqrt(np.mean(off**2)) < 0.05 and np.sqrt(np.mean((off / std) ** 2)) < 4.0
+
+
+def test_a_filter_that_leaves_a_close_motion_out_is_not_trusted():
+    """Of two other motions the Kalman filter carries the stronger; the weaker, close by, would pull it away unnoticed."""
+    _, signals, _ = flown(duration_s=6000.0)
+    lean = np.radians(0.4) * np.cos(2.0 * np.pi * 0.0065 * signals.seconds)
+    tilted = signals.field_b - lean[:, None] * np.cross([1.0, 0.0, 0.0], signals.field_b)
+    both = skiprope_signals(signals.seconds, tilted, field_vector(signals.geometry))
+    found = estimate_skiprope(both, tether_length_m=LENGTH, method="kalman")
+    assert not found.trusted.any() and any("leaves out what moves at 6.5" in note for note in found.notes)
+    assert estimate_skiprope(both, tether_length_m=LENGTH).amplitude_rad[-1] == pytest.approx(np.radians(0.625), rel=0.02)
+
+
 def test_what_a_person_should_know_is_in_the_notes():
     _, signals, _ = flown(pendulous_frequency_hz=0.011)
     assert any("factor of three" in note for note in estimate_skiprope(signals, tether_length_m=LENGTH).notes)

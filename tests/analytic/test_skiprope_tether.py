@@ -9,7 +9,7 @@ from fieldline.errors import InputError, NoEstimateError
 from fieldline.estimation.skiprope import SkipropeSignals, detect, estimate_skiprope, skiprope_signals
 from fieldline.estimation.skiprope.line_band import LOWEST_HZ, line_band, line_frequency
 from fieldline.estimation.skiprope.reeled import PIECE_S, STEP_S, estimate_reeled, piece_starts
-from fieldline.estimation.skiprope.rotary import BAND_HZ, Line, _cone
+from fieldline.estimation.skiprope.rotary import BAND_HZ, Line, cone_of
 from fieldline.estimation.skiprope_telemetry import SkipropeSettings, TetherLengths, read_tether_lengths
 from fieldline.estimation.skiprope_telemetry.tether import swing_taken_off
 from skiprope_flights import START
@@ -56,7 +56,7 @@ def test_a_slow_line_must_be_larger_than_errors_of_the_field():
 @pytest.mark.parametrize(("weak_deg", "expected"), [(0.02, 0.005), (0.2, 0.015)])
 def test_a_weak_mode_above_a_swing_is_not_the_skiprope(weak_deg, expected):
     swings, turns = Line(0.005, np.radians(0.2), 0.05, 1e3), Line(0.015, np.radians(weak_deg), 0.8, 1e2)
-    assert _cone([swings, turns]).frequency_hz == expected
+    assert cone_of([swings, turns]).frequency_hz == expected
 
 
 def test_lengths_that_change_are_followed():

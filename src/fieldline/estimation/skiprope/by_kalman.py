@@ -9,6 +9,8 @@ Settings, chosen on other flights than those that are scored (docs/skiprope-accu
     cone            3e-6 rad over the root of a second: 0.01 deg in an hour
     frequency       1e-7 rad/s over the root of a second: 0.1 mHz in an hour; more for a tether that is reeled
 
+A second motion is carried along, the strongest; where one close to the cone is left out, no row is trusted.
+
 Where the mean normalised square innovation is above `LOST` the filter no longer follows: those rows are not trusted, and a
 note says so. Covariances grow by that mean where it is above one.
 """
@@ -99,6 +101,13 @@ def kalman_track(signals: SkipropeSignals, rows, settings) -> Track:
     late = np.flatnonzero(good == 0.0)
     settled = rows[late[-1] + 1] if len(late) and late[-1] + 1 < len(rows) else rows[0] if not len(late) else np.inf
     notes = []
+    if settings.crowded_hz:
+        settled = np.inf
+        close = ", ".join(f"{1e3 * hz:.4g}" for hz in settings.crowded_hz)
+        notes.append(
+            f"the Kalman filter carries one motion besides the skiprope and leaves out what moves at {close} mHz, close to it: none "
+            "of its rows is trusted; use the harmonic method."
+        )
     if not good[-1]:
         notes.append(
             f"the Kalman filter does not follow at the end of the record (mean square innovation {nis[-1]:.3g}, 1 is "

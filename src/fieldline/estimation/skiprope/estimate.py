@@ -26,9 +26,10 @@ from fieldline.estimation.skiprope.bandpass import positive
 from fieldline.estimation.skiprope.by_bandpass import bandpass_track
 from fieldline.estimation.skiprope.by_harmonic import harmonic_track
 from fieldline.estimation.skiprope.by_kalman import kalman_track
+from fieldline.estimation.skiprope.lines import NEAR, beside, crowded, line_given
 from fieldline.estimation.skiprope.numbers import derived
 from fieldline.estimation.skiprope.reading import FieldKnowledge
-from fieldline.estimation.skiprope.rotary import BAND_HZ, Detection, Line, detect
+from fieldline.estimation.skiprope.rotary import BAND_HZ, Detection, detect
 from fieldline.estimation.skiprope.signals import SkipropeSignals
 from fieldline.estimation.skiprope.solution import SkipropeEstimate
 from fieldline.estimation.skiprope.track import Track
@@ -39,7 +40,6 @@ RULES = ("paper", "corrected")
 USUAL = FieldKnowledge(scale=0.03, elevation_rad=np.radians(2.0), azimuth_rad=np.radians(2.0))
 YAW_STD_RAD = np.radians(5.0)  # of a body that keeps its yaw near zero
 MEASURED_YAW_STD_RAD = np.radians(0.5)
-NEAR = 0.3  # of a given frequency, in which its line is looked for
 WORST_FIELD_RAD = np.radians(40.0)
 ROWS_PER_PERIOD = 20
 BINS = 100  # in a period of the band's upper end: fine enough for motions five times as fast
@@ -52,7 +52,8 @@ class Settings(NamedTuple):
 
     frequency_hz: float  # first
     resolution_hz: float  # to which it is known
-    pendulous_hz: tuple[float, ...]
+    pendulous_hz: tuple[float, ...]  # of motions carried beside the cone, the strongest first
+    crowded_hz: tuple[float, ...]  # of close ones that a filter which carries the strongest alone leaves out
     damping: float
     memory_s: float | None
     rule: str
@@ -84,7 +85,8 @@ def estimate_skiprope(
     ----------
     signals : of `skiprope_signals`, (n,) samples.
     tether_length_m : length [m] of the tether between the two bodies.
-    frequency_hz : a first frequency [Hz]; found from the spectrum by default, within `band_hz` (low, high) [Hz].
+    frequency_hz : a first frequency [Hz], good to a factor of two (`lines`); found from the spectrum by default, within
+        `band_hz` (low, high) [Hz].
     method : "harmonic", "kalman" or "bandpass".
     yaw_rad : the body's yaw a3 as measured, one number or (n,) [rad], with its deviation `yaw_std_rad` (0.5 deg). Without it,
         yaw_std_rad is how far the yaw is wont to be from zero (5 deg).
@@ -117,12 +119,14 @@ def estimate_skiprope(
     sought = coarse.between(coarse.seconds[0], coarse.seconds[0] + REELED_S) if reeled else coarse
     band = _band(frequency_hz, band_hz)
     found = detect(sought, band_hz=band, highest_hz=5.0 * max(band[1], BAND_HZ[1]), false_alarm=false_alarm)
-    line = found.cone if frequency_hz is None else _line_near(found, positive("frequency_hz", frequency_hz))
+    line = found.cone if frequency_hz is None else line_given(found, positive("frequency_hz", frequency_hz))
     found = found._replace(cone=line, others=tuple(other for other in found.lines if other is not line))
     if line is None:
-        return _nothing(method, length, found, signals)
+        return _nothing(method, length, found, signals, frequency_hz)
+    others = beside(found, line)
+    left_out = crowded(found, line, others[0] if others else None)
     settings = Settings(
-        line.frequency_hz, found.resolution_hz, _pendulous(found, line), damping, memory_s, rule, knowledge, measured, reeled
+        line.frequency_hz, found.resolution_hz, others, left_out, damping, memory_s, rule, knowledge, measured, reeled
     )
     rows = _rows(signals, line.frequency_hz, step_s)
     track = TRACKS[method](turned if method == "bandpass" else coarse, rows, settings)
@@ -141,7 +145,7 @@ def estimate_skiprope(
         detection=found,
         trusted_from_s=float(rows[trusted.argmax()]) if trusted.any() else np.nan,
         verdict=verdict_of(numbers, track, trusted),
-        notes=(*notes_of(signals, found, line, off_rad, turn_std), *track.notes),
+        notes=(*notes_of(signals, found, line, off_rad, turn_std, frequency_hz), *track.notes),
         seconds=rows,
         trusted=trusted,
         phasor=track.phasor,
@@ -168,7 +172,7 @@ def _shared(track: Track, yaw_std: float, azimuth_std: float) -> tuple[np.ndarra
     return share * track.azimuth_off_rad, np.full(len(track.phasor), floor)  # (1)
 
 
-def _nothing(method: str, length: float, found: Detection, signals: SkipropeSignals) -> SkipropeEstimate:
+def _nothing(method: str, length: float, found: Detection, signals: SkipropeSignals, given_hz: float | None) -> SkipropeEstimate:
     """The answer that there is no skiprope."""
     empty = np.empty(0)
     none = derived(np.empty((0, 2), dtype=complex), np.empty((0, 4, 4)), empty.astype(int), empty, empty, length)
@@ -178,8 +182,8 @@ def _nothing(method: str, length: float, found: Detection, signals: SkipropeSign
         detected=False,
         detection=found,
         trusted_from_s=np.nan,
-        verdict=none_of(found),
-        notes=notes_of(signals, found, None, 0.0, empty),
+        verdict=none_of(found, given_hz),
+        notes=notes_of(signals, found, None, 0.0, empty, given_hz),
         seconds=empty,
         trusted=empty.astype(bool),
         phasor=np.empty((0, 2), dtype=complex),
@@ -220,19 +224,6 @@ def _band(frequency_hz: float | None, band_hz) -> tuple[float, float]:
         return band_hz
     near = positive("frequency_hz", frequency_hz)
     return min(band_hz[0], (1.0 - NEAR) * near), max(band_hz[1], (1.0 + NEAR) * near)
-
-
-def _line_near(found: Detection, frequency_hz: float) -> Line | None:
-    """The strongest line near a given frequency."""
-    near = [line for line in found.lines if abs(line.frequency_hz / frequency_hz - 1.0) <= NEAR]
-    return max(near, key=lambda line: line.amplitude_rad, default=None)
-
-
-def _pendulous(found: Detection, line: Line) -> tuple[float, ...]:
-    """The strongest two lines well above the cone's, to be fitted beside it."""
-    above = [other for other in found.others if other.frequency_hz > 2.0 * line.frequency_hz]
-    strong = sorted(above, key=lambda other: -other.amplitude_rad)[:2]
-    return tuple(other.frequency_hz for other in strong)
 
 
 def _rows(signals: SkipropeSignals, frequency_hz: float, step_s: float | None) -> np.ndarray:

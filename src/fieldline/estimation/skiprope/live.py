@@ -28,7 +28,8 @@ from fieldline.errors import InputError, NoEstimateError, nearest
 from fieldline.estimation.skiprope import bandpass_step, kalman_step
 from fieldline.estimation.skiprope.bandpass import positive
 from fieldline.estimation.skiprope.by_kalman import LOST, REELED, SETTLED, KalmanSettings
-from fieldline.estimation.skiprope.estimate import MEASURED_YAW_STD_RAD, NEAR, REELED_S, RULES, USUAL, YAW_STD_RAD
+from fieldline.estimation.skiprope.estimate import MEASURED_YAW_STD_RAD, REELED_S, RULES, USUAL, YAW_STD_RAD
+from fieldline.estimation.skiprope.lines import NEAR, beside, crowded, line_given
 from fieldline.estimation.skiprope.numbers import NUMBERS, cone_numbers
 from fieldline.estimation.skiprope.reading import FieldKnowledge
 from fieldline.estimation.skiprope.rotary import BAND_HZ, Detection, detect
@@ -74,7 +75,7 @@ class LiveEstimate(NamedTuple):
 
 HEAD = (
     "last_s", "first_s", "next_check_s", "detected", "searched", "running", "bin_start_s", "bin_count", "bins",
-    "repeated", "bad", "outliers", "samples", "restarts", "threshold_rad", "yaw_rad",
+    "repeated", "bad", "outliers", "samples", "restarts", "threshold_rad", "yaw_rad", "crowded",
 )  # fmt: skip
 
 
@@ -247,10 +248,7 @@ class LiveSkiprope:
             )
         except NoEstimateError:
             return
-        line = found.cone
-        if given is not None:
-            near = [one for one in found.lines if abs(one.frequency_hz / given - 1.0) <= NEAR]
-            line = max(near, key=lambda one: one.amplitude_rad, default=None)
+        line = found.cone if given is None else line_given(found, given)
         self.detection = found._replace(cone=line, others=tuple(one for one in found.lines if one is not line))
         head["searched"], head["detected"] = 1.0, float(line is not None)
         inside = (found.frequency_hz >= band[0]) & (found.frequency_hz <= band[1])
@@ -258,9 +256,9 @@ class LiveSkiprope:
         if line is None or (head["running"] and not self._lost()):
             return
         head["restarts"] += head["running"]
-        above = [one for one in self.detection.others if one.frequency_hz > 2.0 * line.frequency_hz]
-        swing = max(above, key=lambda one: one.amplitude_rad, default=None)
-        self._start(line.frequency_hz, swing.frequency_hz if swing else self._settings["pendulous_hz"])
+        swing = beside(self.detection, line)
+        head["crowded"] = float(self._kalman and bool(crowded(self.detection, line, swing[0] if swing else None)))
+        self._start(line.frequency_hz, swing[0] if swing else self._settings["pendulous_hz"])
         for row in rows:
             self._step(head["first_s"] + row[0], row[1:4].copy(), row[4:7].copy())
 
@@ -318,5 +316,12 @@ class LiveSkiprope:
         cone_numbers(part, covariance, sense, yaw, yaw_std, self._settings["tether_length_m"], numbers)
         detected = bool(head["detected"]) or not head["searched"]
         return LiveEstimate(
-            seconds, used, detected, bool(good) and detected, int(sense), float(frequency), float(deviation), *numbers.tolist()
+            seconds,
+            used,
+            detected,
+            bool(good) and detected and not head["crowded"],
+            int(sense),
+            float(frequency),
+            float(deviation),
+            *numbers.tolist(),
         )

@@ -118,7 +118,7 @@ def detect(signals: SkipropeSignals, *, band_hz=BAND_HZ, highest_hz: float | Non
     near = np.where(doubtful, np.maximum(near, floor), near)
     strength = found.power / near * median
     lines = _lines(found, strength, threshold, width, low)
-    cone = _cone([line for line in lines if line.frequency_hz <= high])
+    cone = cone_of([line for line in lines if line.frequency_hz <= high])
     return Detection(
         *found[:3],
         strength,
@@ -234,7 +234,7 @@ def _peak(found: Rotary, k: int) -> float:
     return float(found.frequency_hz[k] + 0.5 * step * (before - after) / (before - 2.0 * here + after))
 
 
-def _cone(lines) -> Line | None:
+def cone_of(lines) -> Line | None:
     """The line that is the cone: see `detect`."""
     turning = [line for line in lines if abs(line.turning) >= LEAST_TURNING]
     if not turning:
