@@ -105,8 +105,8 @@ def kalman_track(signals: SkipropeSignals, rows, settings) -> Track:
         settled = np.inf
         close = ", ".join(f"{1e3 * hz:.4g}" for hz in settings.crowded_hz)
         notes.append(
-            f"the Kalman filter carries one motion besides the skiprope and leaves out what moves at {close} mHz, close to it: none "
-            "of its rows is trusted; use the harmonic method."
+            f"the Kalman filter carries one motion besides the skiprope and leaves out what moves at {close} mHz, close to it: "
+            "none of its rows is trusted; use the harmonic method."
         )
     if not good[-1]:
         notes.append(
