@@ -379,6 +379,8 @@ def test_refusals():
         {"filter_frequency_hz": "tuned"},
         {"seed": 1.5},
         {"assumed_field": "a field"},
+        {"quantise": "no"},
+        {"as_listed": 1},
     ):
         with pytest.raises(InputError):
             run(**{"duration_s": 100.0, **wrong})

@@ -5,11 +5,16 @@ from __future__ import annotations
 import json
 import os
 import select
+import signal
 import sys
+import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from fieldline.cli.inputs import Source, earth_orientation, three_names
 from fieldline.cli.progress import progress_on_stderr
@@ -66,10 +71,28 @@ def watch(job: Job, live: Live) -> int:
     else:
         print(estimator.header, flush=True)
     try:
-        _listen(job, live, reader, estimator)
+        with _stoppable():
+            _listen(job, live, reader, estimator)
     except KeyboardInterrupt:
         _say("interrupted.", job)
     return _ended(job, live, reader, estimator, paths)
+
+
+@contextmanager
+def _stoppable() -> Iterator[None]:
+    """SIGTERM, by which a service is stopped, taken as Ctrl-C."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def interrupt(number: int, frame: Any) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _listen(job: Job, live: Live, reader: Any, estimator: Any) -> None:
@@ -85,7 +108,9 @@ def _listen(job: Job, live: Live, reader: Any, estimator: Any) -> None:
             rows = reader.feed(tick.lines)
             if first and len(rows.time_utc):
                 first = False
-                _check_orbit(estimator.orbit, rows.time_utc, job)
+                _check_orbit(
+                    estimator.orbit, np.sort(rows.time_utc)[[len(rows.time_utc) // 2]], job
+                )  # one wild stamp is no other day
             _give(estimator.take(rows), estimator, live, job)
         if reader.unreadable and not told_bad:
             told_bad = True
@@ -267,6 +292,4 @@ def _say(words: str, job: Job) -> None:
 
 def _now() -> Any:
     """The present as the only time, by which a calibration of several is chosen."""
-    import numpy as np
-
     return np.array([np.datetime64(time.time_ns(), "ns")])

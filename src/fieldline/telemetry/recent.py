@@ -2,10 +2,14 @@
 
 Streams misbehave. A row of a time that is known is a repeat and is passed over; so is one from before the newest. Where the
 clock goes back and stays there, what came before is forgotten once SETBACK_ROWS rows agree on it, unless they say what is
-known of those times already: then they are sent again. A silence longer than the memory forgets too. Each is told in words.
+known of those times already: then they are sent again. A silence longer than the memory forgets too. Fewer rows than that
+after a leap ahead, and a clock that then goes on from before it, were the leap's fault: they alone are dropped. Each is told in
+words.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +25,15 @@ GAP_S = 60.0  # a longer silence is told
 COUNTS = ("rows", "repeated", "behind", "without_field", "gaps", "restarts")
 
 
+class Before(NamedTuple):
+    """What there was before a leap of the clock ahead, and how many rows have come since."""
+
+    done: Rows
+    pending: Rows
+    last_ns: int
+    since: int
+
+
 class Recent:
     """`rows` is the stretch; `take` adds to it and says what was odd; `counts` counts since the beginning."""
 
@@ -29,6 +42,9 @@ class Recent:
         self.counts = dict.fromkeys(COUNTS, 0)
         self.fast: bool | None = None
         self.resumed = False
+        self.told_again = False
+        self.before: Before | None = None
+        self.clock_changes = 0  # after which the newest row may be an older one
         self._forget()
 
     def _forget(self) -> None:
@@ -66,6 +82,13 @@ class Recent:
             rows = rows.where(slice(count, None))
         return told
 
+    def late(self, ns: np.ndarray) -> int:
+        """How many of the first rows are not newer than the newest, up to those of which a setback is judged."""
+        if self.last_ns is None:
+            return 0
+        run = int((np.flatnonzero(ns > self.last_ns)).min(initial=len(ns)))
+        return min(run, SETBACK_ROWS - sum(len(part.time_utc) for part in self.behind))
+
     def _odd(self, rows: Rows, newest: int) -> list[str]:
         """Rows that are not newer than the newest."""
         ns = rows.time_utc.astype(np.int64)
@@ -90,9 +113,14 @@ class Recent:
     def _set_back(self, late: Rows) -> list[str]:
         """Many rows from before the newest: sent again, or of a clock that was set back."""
         if self._is_known(late):
-            return [f"{len(late.time_utc)} rows from {_iso(late.time_utc[0].astype(np.int64))} on were sent again; passed over."]
+            told, self.told_again = self.told_again, True
+            first = _iso(late.time_utc[0].astype(np.int64))
+            return [] if told else [f"rows from {first} on were sent again; passed over."]
         ns = late.time_utc.astype(np.int64)
         rising = ns > np.maximum.accumulate(np.concatenate(([NEVER], ns)))[:-1]
+        self.clock_changes += 1
+        if self.before is not None and ns.min() > self.before.last_ns:
+            return self._leap_undone(self.before, late.where(rising))
         words = (
             f"the clock went back from {_iso(self.last_ns)} to {_iso(ns[0])} and goes on from there: what came before is "
             "forgotten, and the estimate begins anew."
@@ -101,6 +129,16 @@ class Recent:
         self.counts["behind"] -= int(rising.sum())
         self._forget()
         self._append(late.where(rising))
+        return [words]
+
+    def _leap_undone(self, before: Before, late: Rows) -> list[str]:
+        """The rows since a leap ahead dropped, as outnumbered by those that go on from before it."""
+        words = (
+            f"{before.since} rows up to {_iso(self.last_ns)} were ahead of the clock: dropped, and the rest goes on from before."
+        )
+        self.counts["behind"] -= len(late.time_utc)
+        self.done, self.pending, self.last_ns, self.before = [before.done], before.pending, before.last_ns, None
+        self._append(late)
         return [words]
 
     def _is_known(self, late: Rows) -> bool:
@@ -118,8 +156,13 @@ class Recent:
         """Rows that are newer than all before."""
         ns = rows.time_utc.astype(np.int64)
         told = []
+        if self.before is not None:
+            since = self.before.since + len(ns)
+            self.before = self.before._replace(since=since) if since < SETBACK_ROWS else None
         if self.last_ns is not None:
             silence = int(ns[0]) - self.last_ns
+            if silence > GAP_S * SECOND_NS and len(ns) < SETBACK_ROWS:
+                self.before = Before(self.rows, self.pending, self.last_ns, len(ns))
             if silence > self.memory_ns:
                 told.append(f"no row for {silence / SECOND_NS:.0f} s, longer than the memory: the estimate begins anew.")
                 self.counts["restarts"] += 1
@@ -127,7 +170,7 @@ class Recent:
             elif silence > GAP_S * SECOND_NS:
                 told.append(f"no row for {silence / SECOND_NS:.0f} s before {_iso(ns[0])}.")
                 self.counts["gaps"] += 1
-        self.resumed, self.behind, self.last_ns = False, [], int(ns[-1])
+        self.resumed, self.told_again, self.behind, self.last_ns = False, False, [], int(ns[-1])
         waiting = joined_rows([self.pending, rows])
         if self.fast is None:
             if len(waiting.time_utc) < FIRST_ROWS:
@@ -172,6 +215,7 @@ class Recent:
             "last_ns": self.last_ns,
             "done": _plain(self._recent(self.rows) if self.last_ns is not None else no_rows()),
             "pending": _plain(self.pending),
+            "before": None if self.before is None else [*map(_plain, self.before[:2]), *self.before[2:]],
         }
 
     @classmethod
@@ -181,6 +225,9 @@ class Recent:
         recent.counts = {name: int(state["counts"][name]) for name in COUNTS}
         recent.fast, recent.last_ns = state["fast"], state["last_ns"]
         recent.done, recent.pending = [_rows(state["done"])], _rows(state["pending"])
+        if state.get("before"):
+            done, pending, last_ns, since = state["before"]
+            recent.before = Before(_rows(done), _rows(pending), int(last_ns), int(since))
         recent.resumed = True
         if recent.last_ns is not None and not isinstance(recent.last_ns, int):
             raise InputError("the newest time of the state is no whole number of nanoseconds.")

@@ -51,7 +51,8 @@ def skiprope_columns(answer: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     for k in range(np.shape(answer["crossing_time"])[1]):
         columns[f"crossing_{k + 1}_utc"] = _stamps(np.asarray(answer["crossing_time"])[:, k])
         columns[f"crossing_{k + 1}_std_s"] = np.round(np.asarray(answer["crossing_std_s"])[:, k], 3)
-        columns[f"crossing_{k + 1}_towards"] = np.asarray(answer["crossing_towards"])[:, k].astype(bool)
+        side = np.where(np.asarray(answer["crossing_towards"])[:, k], "1", "0")
+        columns[f"crossing_{k + 1}_towards"] = np.where(columns[f"crossing_{k + 1}_utc"] == "", "", side)
     return columns
 
 

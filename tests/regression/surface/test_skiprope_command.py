@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -257,6 +258,7 @@ def test_live_says_what_a_file_says(method):
 def test_a_pipe_gives_rows_and_files(folder, capsys, monkeypatch, lines):
     code, rows, err = live(capsys, monkeypatch, lines, "--out", "l", "--every-s", "300", ends=False)
     assert code == 0 and rows[0].startswith("time_utc,amplitude_deg,frequency_hz,sense,phase_deg,deflection_m")
+    assert rows[1].split(",")[1:] == [*["", "", "0"], *[""] * 12, "0", *[""] * 9]  # no estimate yet: no crossings, no sides
     assert 10 <= len(rows) <= 14 and all(row.count(",") == rows[0].count(",") for row in rows)
     assert "1,700 rows" in err and "wrote l.nc, l.csv, l.html" in err
     table = pd.read_csv(folder / "l.csv")
@@ -309,6 +311,17 @@ def test_rows_sent_again_late_or_spoilt_do_not_matter(folder, capsys, monkeypatc
     assert code == 0 and rows == whole
     assert "were sent again; passed over" in err and "1 lines that could not be read" in err
     assert 'a line that is no row of the table is passed over and counted, as others will be: "half a li"' in err
+
+
+@pytest.mark.parametrize("ahead_s", [3600, 10_000_000])
+def test_a_leap_ahead_that_is_taken_back_costs_the_rows_that_leapt(folder, capsys, monkeypatch, lines, ahead_s):
+    """Three rows of a wrong clock among the others: they are dropped, and the estimates are as without them."""
+    options = ("--every-s", "400", "--method", "kalman")
+    _, whole, _ = live(capsys, monkeypatch, lines, *options)
+    leapt = [f"{np.datetime64(lines[900].split('Z')[0]) + np.timedelta64(ahead_s + k, 's')}Z,1e4,2e4,3e4" for k in range(3)]
+    code, rows, err = live(capsys, monkeypatch, [*lines[:900], *leapt, *lines[900:]], *options)
+    assert "were ahead of the clock: dropped" in err and code == 0
+    assert rows[-3:] == whole[-3:] and set(whole) <= set(rows)
 
 
 def test_a_clock_that_goes_back_begins_anew(folder, capsys, monkeypatch, lines):
@@ -367,6 +380,8 @@ def test_streams_that_are_none(folder, capsys, monkeypatch, sent, code, words):
         (["--calibration", "bias"], "needs the whole record"),
         (["--every-s", "0.2"], "the step must be 1 s or more"),
         (["--memory-s", "50"], "no shorter than the step"),
+        (["--memory-s", "0"], "a memory of 0 s"),
+        (["--every-s", "0"], "an estimate every 0 s"),
         (["--state", "no/such.json"], 'the folder "no" does not exist'),
         (["--state", ELEMENTS], "is an input"),
     ],
@@ -403,7 +418,8 @@ def test_following_what_is_not_there(folder, capsys):
     assert "cannot be followed" in capsys.readouterr().err
 
 
-def test_an_interrupt_keeps_the_state(folder, lines):
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_keeps_the_state(folder, lines, sent):
     path = write(folder / "f.csv", lines[:700])
     command = [sys.executable, "-c", "import sys; from fieldline.cli import main; sys.exit(main())", "skiprope", str(path)]
     command += [*ASKED, "--follow", "--state", "s.json", "--every-s", "400"]
@@ -412,7 +428,7 @@ def test_an_interrupt_keeps_the_state(folder, lines):
     while not (folder / "s.json").exists() and time.monotonic() < deadline:
         time.sleep(0.1)
     time.sleep(1.0)
-    running.send_signal(2)
+    running.send_signal(sent)
     out, err = running.communicate(timeout=60)
     assert running.returncode in (0, 1) and "interrupted." in err and "Traceback" not in err
     assert json.loads((folder / "s.json").read_text())["recent"]["counts"]["rows"] == 699
@@ -465,8 +481,11 @@ def test_a_length_that_changes_live(folder, capsys, monkeypatch, lines):
         (["--tether-length-m", "20000", "--swing-hz", "quick"], "--swing-hz"),
         (["--tether-length-m", "20000", "--end-mass-kg", "500"], "give both"),
         (["--tether-lengths", "none.csv"], "no such file"),
+        (["--tether-lengths", "other.csv"], "have no time in common"),
+        (["--tether-length-m", "20000", "--method", "kalman", "--steady-s", "900"], "steady_s"),
     ],
 )
 def test_what_is_not_known_of_the_tether(folder, capsys, more, words):
+    (folder / "other.csv").write_text("time_utc,length_m\n2020-01-01T00:00:00Z,20000\n2020-01-02T00:00:00Z,10000\n")
     assert main(["skiprope", SAMPLE, "--orbit", ELEMENTS, *more]) == 2
     assert words in capsys.readouterr().err

@@ -179,6 +179,9 @@ def _check(settings: dict) -> None:
         number(name, settings[name], -90.0, 90.0)
     for name, count in (("skiprope_deg", 2), ("pendulous_deg", 2), ("bias_deg", 3)):
         _angles(name, settings[name], count)
+    for name in ("quantise", "as_listed"):
+        if not isinstance(settings[name], bool):
+            raise InputError(f"{name} must be True or False; got {settings[name]!r}.")
     if isinstance(settings["seed"], bool) or not isinstance(settings["seed"], int) or settings["seed"] < 0:
         raise InputError(f"seed must be a whole number, 0 or more; got {settings['seed']!r}.")
     if settings["method"] not in METHODS:

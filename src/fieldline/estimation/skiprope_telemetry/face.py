@@ -79,6 +79,8 @@ def estimate_skiprope(
         tether_kg_m=tether_kg_m, swing=swing,
     )  # fmt: skip
     rows = rows_of(telemetry)
+    if lengths is not None:
+        lengths.of_record(rows.time_utc)
     if settings.averages and comes_fast(rows.time_utc):
         rows = averaged(rows)
     solved = solve_rows(rows, orbit, settings, progress)

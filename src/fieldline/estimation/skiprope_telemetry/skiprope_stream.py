@@ -50,9 +50,11 @@ class SkipropeStream:
         every_s: float | None = None,
     ):
         period = None if settings.frequency_hz is None else 1.0 / settings.frequency_hz
-        memory = memory_s or (MEMORY_S if period is None else MEMORY_PERIODS * period)
+        usual = MEMORY_S if period is None else MEMORY_PERIODS * period
+        memory = usual if memory_s is None else memory_s
         pace = 3.0 if settings.method == "harmonic" else 1.0
-        every = every_s or pace * (EVERY_S if period is None else EVERY_PERIODS * period)
+        usual = pace * (EVERY_S if period is None else EVERY_PERIODS * period)
+        every = usual if every_s is None else every_s
         if not 1.0 <= every <= memory <= LONGEST_MEMORY_S:
             raise InputError(
                 f"an estimate every {every:g} s of a memory of {memory:g} s: the step must be 1 s or more, and the memory no "
@@ -79,6 +81,12 @@ class SkipropeStream:
         said: list[Said] = []
         while len(rows.time_utc):
             ns = rows.time_utc.astype(np.int64)
+            late = self.recent.late(ns)
+            if late:  # rows from before the newest move no clock until they are enough
+                said += self._add(rows.where(slice(0, late)))
+                rows = rows.where(slice(late, None))
+                continue
+            ns = ns[: (np.flatnonzero(np.diff(ns) <= 0) + 1).min(initial=len(ns))]
             beyond = np.flatnonzero(ns >= self.due_ns) if self.due_ns is not None else np.arange(1)
             count = int(beyond[0]) if len(beyond) else len(ns)
             if count:
@@ -97,9 +105,9 @@ class SkipropeStream:
         return self._estimate(self.recent.last_ns + 1)
 
     def _add(self, rows: Rows) -> list[Said]:
-        restarts = self.recent.counts["restarts"]
+        before = self.recent.counts["restarts"], self.recent.clock_changes
         said = [Said("word", one) for one in self.recent.take(rows)]
-        if self.recent.counts["restarts"] != restarts and self.recent.last_ns is not None:
+        if (self.recent.counts["restarts"], self.recent.clock_changes) != before and self.recent.last_ns is not None:
             self.due_ns = (self.recent.last_ns // self.every_ns + 1) * self.every_ns
         return said
 

@@ -75,6 +75,10 @@ class SkipropeSettings:
             raise InputError(f'method "{self.method}" is not known; {nearest(str(self.method), METHODS)}')
         if not isinstance(self.calibration, Calibration) and self.calibration not in ("none", "auto", "bias", "full"):
             raise InputError(f"calibration must be none, auto, bias, full or a Calibration; got {self.calibration!r}.")
+        if self.steady_s is not None and self.method != "harmonic":
+            raise InputError(
+                f'steady_s, the memory of the harmonic fit, needs method "harmonic"; got "{self.method}". Leave it out.'
+            )
         if self.reeled and self.method != "kalman":
             raise InputError(f'reeled, a frequency that runs, needs method "kalman"; got "{self.method}".')
         if self.reeled and self.lengths is not None:

@@ -47,6 +47,16 @@ class TetherLengths:
         since = (np.asarray(time_utc, dtype="datetime64[ns]") - self.time_utc[0]).astype(np.int64)
         return np.interp(since, (self.time_utc - self.time_utc[0]).astype(np.int64), self.length_m)
 
+    def of_record(self, time_utc) -> None:
+        """InputError where no row of a record at times (n,) lies within the table."""
+        times = np.asarray(time_utc, dtype="datetime64[ns]")
+        if times[-1] < self.time_utc[0] or times[0] > self.time_utc[-1]:
+            own, rows = (np.datetime_as_string(x[[0, -1]], unit="s") for x in (self.time_utc, times))
+            raise InputError(
+                f"the table of the tether's lengths, {own[0]}Z to {own[1]}Z, and the telemetry, {rows[0]}Z to {rows[1]}Z, have "
+                "no time in common: give the lengths of this flight, or --tether-length-m alone."
+            )
+
     def beyond(self, time_utc) -> tuple[str, ...]:
         """A remark where rows at times (n,) lie outside the table, whose first and last length are held there."""
         times = np.asarray(time_utc, dtype="datetime64[ns]")
