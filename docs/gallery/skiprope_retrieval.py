@@ -105,11 +105,15 @@ def main() -> None:
             off = np.degrees((off + np.pi) % (2 * np.pi) - np.pi)
             size = np.sqrt(np.mean(np.sum(q**2, axis=1)))
             radius = np.sqrt(np.mean(np.sum((p - q) ** 2, axis=1)))
+            sure = rows[part, 4] > 0.0
+            trusted = f"{100.0 * sure.mean():.0f} %"
+            if sure.any():
+                trusted += f", {np.sqrt(np.mean(np.sum((p - q)[sure] ** 2, axis=1))):.1f} m, sd {off[sure].std():.1f} deg"
             share = 100.0 * (np.sqrt(np.mean(np.sum(p**2, axis=1))) / size - 1.0)
             print(
                 f"{method} {start} s: {np.interp(start, seconds, length):.0f} m, {1e3 * rows[part, 3].mean():.2f} mHz, "
                 f"true {size:.1f} m, radius off {radius:.1f} m, plane {off.mean():.1f} sd {off.std():.1f} deg, "
-                f"deflection {share:.0f} %"
+                f"deflection {share:.0f} %; trusted {trusted}"
             )
     draw(seconds, length, swing, drawn["harmonic"])
 

@@ -123,6 +123,13 @@ def test_yaw_and_azimuth_are_one_until_the_yaw_is_measured(method):
     assert measured[1] == pytest.approx(0.5)
 
 
+def test_a_filter_says_how_little_it_knows_before_its_first_samples():
+    """No row of the Kalman filter is without a frequency and a doubt, also where its samples are means over seconds."""
+    _, signals, _ = flown()
+    found = estimate_skiprope(signals, tether_length_m=LENGTH, method="kalman")
+    assert found.frequency_hz[0] == pytest.approx(HZ, rel=0.02) and found.amplitude_std_rad[0] > np.radians(0.5)
+
+
 def test_no_skiprope_is_said():
     _, signals, _ = flown(skiprope_deg=(0.0, 0.0))
     found = estimate_skiprope(signals, tether_length_m=LENGTH)

@@ -17,6 +17,7 @@ DEGREE = 180.0 / np.pi
 MILLIHERTZ = 1e3
 SUBSCRIPTS = "₁₂₃"
 ELLIPSES = 12  # in a turn
+THIN, THIN_STROKE = 0.02, 4.0  # of the figure's reach, and [points]: an ellipse thinner than that would hide under the path
 TURNS = 4.0  # of which the azimuth is drawn
 FEWEST_PERIODS = 2.0  # of a line, in the record, for the spectrum to show it
 TURN = np.linspace(0.0, 2.0 * np.pi, 49)
@@ -104,9 +105,10 @@ def place_picture(record: SkipropeRecord) -> Picture | None:
     figure, axes = panels(1, 2, height_in=4.4, widths=(1.0, 1.15), column_gap=0.24)
     left, right = axes[0]
     reach = 1.25 * float(np.max(np.hypot(*position[rows].T) + 2.0 * np.sqrt(np.max(np.abs(covariance[rows]), axis=(1, 2)))))
-    left.plot(*(reach * np.outer([-1.0, 1.0], _direction(record)).T), color=FOURTH, linewidth=1.0, linestyle=(0, (4, 2.5)))
+    dashed = {"color": FOURTH, "linewidth": 1.0, "linestyle": (0, (4, 2.5)), "label": _plane_words(record)}
+    left.plot(*(reach * np.outer([-1.0, 1.0], _direction(record)).T), **dashed)
     for row in rows[:: max(len(rows) // ELLIPSES, 1)]:
-        left.fill(*_ellipse(position[row], covariance[row]), color=AXIS_COLOURS[0], alpha=0.3, linewidth=0)
+        _draw_ellipse(left, position[row], covariance[row], reach)
     left.plot(*_smooth(position[rows]).T, color=AXIS_COLOURS[0], linewidth=1.2)
     left.plot(*position[rows[-1]], "o", color=WARM, markersize=7.0)
     left.annotate("last", position[rows[-1]], textcoords="offset points", xytext=(7, 5), color=INK, fontsize=8)
@@ -115,6 +117,7 @@ def place_picture(record: SkipropeRecord) -> Picture | None:
     left.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     left.set(xlabel="U, along the velocity [m]", ylabel="V, along the orbit's normal [m]")
     left.set_title("seen from above, last turn")
+    legend(left)
     _draw_azimuth(right, record)
     return Picture(
         "place",
@@ -241,6 +244,25 @@ def _direction(record: SkipropeRecord) -> np.ndarray:
     """(2,) along the plane that is crossed next, in (U, V)."""
     azimuth = float(record.values("crossing_plane_rad")[-1, 0])
     return np.array([-np.sin(azimuth), np.cos(azimuth)])
+
+
+def _plane_words(record: SkipropeRecord) -> str:
+    """What the dashed plane is."""
+    word = record.verdict["settings"]["plane"]
+    return {"field": "the field's plane", "orbit": "the orbit's plane", "normal": "across the flight"}.get(
+        word, f"plane at {word}"
+    )
+
+
+def _draw_ellipse(axes: Any, middle: np.ndarray, covariance: np.ndarray, reach: float) -> None:
+    """Two standard deviations about a place, as a stroke where they are thin."""
+    outline = _ellipse(middle, covariance)
+    if 2.0 * np.sqrt(max(float(np.linalg.eigvalsh(covariance)[0]), 0.0)) > THIN * reach:
+        axes.fill(*outline, color=AXIS_COLOURS[0], alpha=0.3, linewidth=0)
+        return
+    end = int(np.linalg.norm(outline - middle[:, None], axis=0).argmax())
+    far = np.stack([outline[:, end], 2.0 * middle - outline[:, end]], axis=1)
+    axes.plot(*far, color=AXIS_COLOURS[0], alpha=0.3, linewidth=THIN_STROKE, solid_capstyle="butt")
 
 
 def _ellipse(middle: np.ndarray, covariance: np.ndarray) -> np.ndarray:

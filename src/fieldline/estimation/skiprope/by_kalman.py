@@ -94,7 +94,8 @@ def kalman_track(signals: SkipropeSignals, rows, settings) -> Track:
     usual = replace(usual, noise_tesla=reading_noise(thin, usual.noise_tesla))
     params = usual.packed(settings.frequency_hz, swing)
     memory, memories = np.zeros(SIZE), np.zeros((len(rows), SIZE))
-    kalman_run(thin.seconds, thin.field_b, field_vector(thin.geometry), memory, params, rows, memories)
+    at = np.maximum(rows, thin.seconds[0])  # a row before the first mean of samples is of the guess that they are met with
+    kalman_run(thin.seconds, thin.field_b, field_vector(thin.geometry), memory, params, at, memories)
     parts, covariance, numbers = np.empty((len(rows), 4)), np.empty((len(rows), 4, 4)), np.empty((len(rows), 6))
     kalman_rows(memories, SETTLED, LOST, parts, covariance, numbers)
     sense, good, frequency, deviation, off, nis = numbers.T
