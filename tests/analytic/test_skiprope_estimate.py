@@ -130,6 +130,21 @@ def test_a_filter_says_how_little_it_knows_before_its_first_samples():
     assert found.frequency_hz[0] == pytest.approx(HZ, rel=0.02) and found.amplitude_std_rad[0] > np.radians(0.5)
 
 
+def test_rare_samples_are_not_taken_for_noisy_ones():
+    """A reading every ten seconds: three to a pendulous swing, whose differences are 25 times the noise."""
+    _, signals, _ = flown(duration_s=6000.0)
+    rare = skiprope_signals(signals.seconds[::10], signals.field_b[::10], field_vector(signals.geometry)[::10])
+    found = estimate_skiprope(rare, tether_length_m=LENGTH, method="kalman")
+    off = found.amplitude_rad[300:] / np.radians(0.625) - 1.0
+    assert np.abs(off).max() < 0.02 and np.median(found.amplitude_std_rad[300:]) < np.radians(0.625) * 0.03
+
+
+def test_a_filter_that_has_not_settled_says_so():
+    _, signals, _ = flown(duration_s=1000.0, skiprope_deg=(0.09, 0.09))
+    found = estimate_skiprope(signals, tether_length_m=LENGTH, method="kalman", frequency_hz=HZ)
+    assert not found.trusted.any() and any("has not settled" in note for note in found.notes)
+
+
 def test_no_skiprope_is_said():
     _, signals, _ = flown(skiprope_deg=(0.0, 0.0))
     found = estimate_skiprope(signals, tether_length_m=LENGTH)

@@ -59,6 +59,20 @@ def test_crossings_of_the_fields_plane_are_where_the_truth_crosses_it():
     assert list(towards[1:]) == list(~towards[:-1])
 
 
+def test_where_the_field_is_steep_its_plane_is_badly_known():
+    """Crossings of the field's plane are as unsure as two degrees of direction make its azimuth; of others, as the tether is."""
+    record = flight(skiprope_deg=(0.6, 0.6))
+    found, orbit = estimate(record), estimate(record, plane="orbit")
+    elevation = np.interp(seconds_of(found), seconds_of(found, "sample_time"), found.field_elevation_rad.values)
+    doubt = np.hypot(found.yaw_std_rad.values, 2.0 * DEG * np.abs(np.tan(elevation)))
+    rate = np.median(np.abs(np.diff(np.unwrap(found.plane_rad.values))) / np.diff(seconds_of(found)))
+    stated = found.crossing_std_s.values[:, 0]
+    assert np.median(stated * rate / doubt) == pytest.approx(1.0, abs=0.15)
+    assert np.median(orbit.crossing_std_s.values[:, 0] * rate / orbit.yaw_std_rad.values) == pytest.approx(1.0, abs=0.15)
+    steep = np.abs(elevation) > np.radians(35.0)
+    assert np.median(stated[steep]) > 1.15 * np.median(stated[np.abs(elevation) < np.radians(10.0)])
+
+
 @pytest.mark.parametrize("plane, azimuth_deg", [("normal", 0.0), ("orbit", -90.0), ("37.5", 37.5), (-120, -120.0)])
 def test_crossings_of_a_plane_that_stands(plane, azimuth_deg):
     record = flight()

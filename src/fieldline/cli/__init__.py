@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 
-from fieldline.errors import FieldlineError
+from fieldline.errors import FieldlineError, shown
 
 INTERRUPTED = 130
 FAULT = 70
@@ -56,18 +56,29 @@ def _run(arguments: list[str]) -> int:
     except Exception as error:
         if not hasattr(error, "format_message"):
             raise
-        return _refuse_usage(error)
+        return _refuse_usage(error, arguments)
     if code == INTERRUPTED and not isinstance(code, Told):  # newer Typer ends so by itself, older ones by Abort
         raise KeyboardInterrupt
     return code if isinstance(code, int) else 0
 
 
-def _refuse_usage(error) -> int:
-    """A usage error of the parser: what was wrong and where the help is."""
+def _refuse_usage(error, arguments: list[str]) -> int:
+    """A usage error of the parser: what was wrong, what came, and where the help is."""
     command = getattr(getattr(error, "ctx", None), "command_path", "fieldline")
-    message = error.format_message() or "no command was given."
-    message = message.rstrip(".")
-    return _tell(f"{message}{'' if message.endswith('?') else '.'} See: {command} --help", 2)
+    message = (error.format_message() or "no command was given.").rstrip(".")
+    came = _came(getattr(getattr(error, "param", None), "opts", ()), arguments)
+    told = f'; got "{shown(came)}"' if came is not None and f"'{came}'" not in message else ""
+    return _tell(f"{message}{told}{'' if message.endswith('?') else '.'} See: {command} --help", 2)
+
+
+def _came(options, arguments: list[str]) -> str | None:
+    """The value that one of these options was last given, where it was."""
+    came = None
+    for k, one in enumerate(arguments):
+        name, joined, value = one.partition("=")
+        if name in options:
+            came = value if joined else arguments[k + 1] if k + 1 < len(arguments) else None
+    return came
 
 
 def _tell(message: str, code: int) -> int:

@@ -266,6 +266,8 @@ def _checked_state(path: Path | None, job: Job) -> Any:
         raise InputError(f'--state "{path}" is an input; give it a file of its own.')
     if not path.parent.is_dir():
         raise InputError(f'--state "{path}": the folder "{path.parent}" does not exist. Make it first.')
+    if path.is_dir():
+        raise InputError(f'--state "{path}" is a folder; give a file in it, which need not exist yet.')
     if not path.exists():
         return None
     from fieldline.files import read_text

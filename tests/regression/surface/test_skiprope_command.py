@@ -384,6 +384,9 @@ def test_streams_that_are_none(folder, capsys, monkeypatch, sent, code, words):
         (["--every-s", "0"], "an estimate every 0 s"),
         (["--state", "no/such.json"], 'the folder "no" does not exist'),
         (["--state", ELEMENTS], "is an input"),
+        (["--state", "."], "is a folder"),
+        (["--silence-s", "soon"], 'got "soon"'),
+        (["--silence-s=0"], 'got "0"'),
     ],
 )
 def test_live_options_that_cannot_be(folder, capsys, monkeypatch, lines, options, words):

@@ -12,7 +12,8 @@ Settings, chosen on other flights than those that are scored (docs/skiprope-accu
 A second motion is carried along, the strongest; where one close to the cone is left out, no row is trusted.
 
 Where the mean normalised square innovation is above `LOST` the filter no longer follows: those rows are not trusted, and a
-note says so. Covariances grow by that mean where it is above one.
+note says so. Covariances grow by that mean where it is above one. Where samples are so far apart that their differences tell of
+the motion instead of the noise, the record is heard twice: the first time shows how large the noise is.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ import numpy as np
 from fieldline.estimation.skiprope.kalman_step import (
     ALL_MISSED,
     COUNT,
+    MEAN_NIS,
     PARAMETERS,
     SIZE,
     kalman_rows,
@@ -37,6 +39,8 @@ LOST = 4.0  # mean NIS over two periods
 SETTLED = 0.25  # deviation of the cone's phasors over the cone, from which it is trusted
 SAMPLES_PER_PERIOD = 24
 KEPT = 0.99  # of the differences
+DENSE_RAD = 0.5  # of the fastest motion, a sample: beyond it fourth differences hold the motion
+TOO_QUIET, LEAST_NIS = 0.5, 1e-3  # mean NIS that shows so, and the least it is believed
 MANY = 0.05  # of the samples, passed over: worth a note
 
 
@@ -85,17 +89,25 @@ def reading_noise(signals: SkipropeSignals, otherwise: float) -> float:
     return max(float(np.sqrt(np.mean(size[: int(KEPT * len(size))] ** 2) / 70.0)), 1e-10)
 
 
+def _heard(thin: SkipropeSignals, params: np.ndarray, rows) -> tuple[np.ndarray, np.ndarray]:
+    """The filter's memory after all samples, and (m, SIZE) at the rows."""
+    memory, memories = np.zeros(SIZE), np.zeros((len(rows), SIZE))
+    at = np.maximum(rows, thin.seconds[0])  # a row before the first mean of samples is of the guess that they are met with
+    kalman_run(thin.seconds, thin.field_b, field_vector(thin.geometry), memory, params, at, memories)
+    return memory, memories
+
+
 def kalman_track(signals: SkipropeSignals, rows, settings) -> Track:
     """Phasors at times `rows` (m,) [s]; see `estimate.Settings`."""
     fastest = max((settings.frequency_hz, *settings.pendulous_hz))
     thin = signals.thinned(1.0 / (SAMPLES_PER_PERIOD * fastest))
     swing = settings.pendulous_hz[0] if settings.pendulous_hz else None
     usual = REELED if settings.reeled else KalmanSettings()
-    usual = replace(usual, noise_tesla=reading_noise(thin, usual.noise_tesla))
-    params = usual.packed(settings.frequency_hz, swing)
-    memory, memories = np.zeros(SIZE), np.zeros((len(rows), SIZE))
-    at = np.maximum(rows, thin.seconds[0])  # a row before the first mean of samples is of the guess that they are met with
-    kalman_run(thin.seconds, thin.field_b, field_vector(thin.geometry), memory, params, at, memories)
+    noise = reading_noise(thin, usual.noise_tesla)
+    memory, memories = _heard(thin, replace(usual, noise_tesla=noise).packed(settings.frequency_hz, swing), rows)
+    if TURN * fastest * thin.step_s > DENSE_RAD and memory[MEAN_NIS] < TOO_QUIET:  # taken for noise: the motions themselves
+        noise *= np.sqrt(max(memory[MEAN_NIS], LEAST_NIS))
+        memory, memories = _heard(thin, replace(usual, noise_tesla=noise).packed(settings.frequency_hz, swing), rows)
     parts, covariance, numbers = np.empty((len(rows), 4)), np.empty((len(rows), 4, 4)), np.empty((len(rows), 6))
     kalman_rows(memories, SETTLED, LOST, parts, covariance, numbers)
     sense, good, frequency, deviation, off, nis = numbers.T
@@ -109,7 +121,12 @@ def kalman_track(signals: SkipropeSignals, rows, settings) -> Track:
             f"the Kalman filter carries one motion besides the skiprope and leaves out what moves at {close} mHz, close to it: "
             "none of its rows is trusted; use the harmonic method."
         )
-    if not good[-1]:
+    if not good[-1] and nis[-1] < LOST:
+        notes.append(
+            "the Kalman filter has not settled by the end of the record: none of its rows is trusted; give it a longer record, "
+            "or use the harmonic method."
+        )
+    elif not good[-1]:
         notes.append(
             f"the Kalman filter does not follow at the end of the record (mean square innovation {nis[-1]:.3g}, 1 is "
             "consistent): none of its rows is trusted; use the harmonic method, or another first frequency."

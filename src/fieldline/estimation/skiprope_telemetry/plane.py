@@ -6,12 +6,14 @@
     a number   the azimuth in degrees, from the orbit's normal towards against the flight
 
 A plane that turns is met where the tether's azimuth reaches the plane's of that moment; beyond the last sample the field's
-azimuth is carried on at its last rate.
+azimuth is carried on at its last rate. The field's direction is taken to be known to 2 deg, which is that times the tangent of
+its elevation in its azimuth, besides the floor that yaw and azimuth share: where the field is steep its plane is badly known, and
+the deviations of its crossings are larger.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +26,7 @@ NAMED_DEG = {"orbit": -90.0, "normal": 0.0}
 PASSES = 4  # for a plane that turns: each takes the error down by its rate over the tether's, a hundredth or so
 LAST_S = 120.0  # over which the last rate is taken
 COUNT = 3
+MOST_DOUBT_RAD = np.pi / np.sqrt(12.0)  # of a plane of which nothing is known
 
 
 class Crossings(NamedTuple):
@@ -52,6 +55,16 @@ class Plane:
         kept = signals.seconds >= last - LAST_S
         rate = np.polyfit(signals.seconds[kept] - last, known[kept], 1)[0] if kept.sum() > 1 else 0.0
         return np.interp(times, signals.seconds, known) + rate * np.maximum(times - last, 0.0)
+
+    def doubt_rad(self, seconds, signals: SkipropeSignals) -> np.ndarray:
+        """Standard deviation of the plane's azimuth at times [s], besides the floor."""
+        from fieldline.estimation.skiprope.estimate import USUAL
+
+        times = np.asarray(seconds, dtype=float)
+        if self.azimuth_deg is not None:
+            return np.zeros(times.shape)
+        steep = np.interp(times, signals.seconds, np.abs(np.tan(signals.geometry.elevation_rad)))
+        return np.minimum(USUAL.elevation_rad * steep, MOST_DOUBT_RAD)
 
 
 def plane_of(given) -> Plane:
@@ -83,12 +96,14 @@ def next_crossings(estimate: SkipropeEstimate, signals: SkipropeSignals, plane: 
     if not rows:
         return Crossings(seconds, std, side, azimuth)
     everything = slice(0, rows)
+    floor = estimate.yaw_std_rad
     for k in range(COUNT):
         at = estimate.seconds
         for _ in range(PASSES if plane.azimuth_deg is None else 1):
             azimuth[:, k] = plane.azimuth_rad(at, signals)
+            doubtful = replace(estimate, yaw_std_rad=np.hypot(floor, plane.doubt_rad(at, signals)))
             with np.errstate(divide="ignore", invalid="ignore"):  # a row without any deflection crosses nothing
-                found = estimate.crossings(azimuth[:, k], COUNT + 1, row=everything)
+                found = doubtful.crossings(azimuth[:, k], COUNT + 1, row=everything)
             at = _later(found.seconds, at, k, estimate)
         pick = np.abs(found.seconds - at[:, None]).argmin(axis=1)
         index = np.arange(rows)
