@@ -95,8 +95,12 @@ class Recent:
         repeated = ns == newest
         self.counts["repeated"] += int(repeated.sum())
         self.counts["behind"] += int((~repeated).sum())
-        if self.resumed:  # a stream that begins anew after a restart sends what is known
-            return []
+        if self.resumed and self._is_sent_again(rows):  # a stream that begins anew after a restart sends what is known
+            told, self.told_again = self.told_again, True
+            words = (
+                f"rows from {_iso(ns[0])} on are from before the newest, {_iso(newest)}, and passed over until newer ones come."
+            )
+            return [] if told else [words]
         first = self.counts["repeated"] + self.counts["behind"] == len(ns)
         told = []
         if first:
@@ -140,6 +144,13 @@ class Recent:
         self.done, self.pending, self.last_ns, self.before = [before.done], before.pending, before.last_ns, None
         self._append(late)
         return [words]
+
+    def _is_sent_again(self, rows: Rows) -> bool:
+        """Whether the first rows after a restart may be of a stream that begins anew: known, or older than all that is kept."""
+        first, kept = rows.time_utc.min(), self.rows.time_utc
+        if self.before is not None and first.astype(np.int64) > self.before.last_ns:
+            return False
+        return not len(kept) or first < kept[0] or self._is_known(rows)
 
     def _is_known(self, late: Rows) -> bool:
         """Whether rows say of their times what the stretch says."""
