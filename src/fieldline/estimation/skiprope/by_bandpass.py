@@ -23,6 +23,7 @@ from fieldline.estimation.skiprope.tuning import tune
 READ_PER_PERIOD = 64
 AVERAGED_PERIODS = 4.0
 LONGEST_HOLD_PERIODS = 0.5
+STEEPEST_RAD = np.radians(75.0)  # of the field: C3 is four times its noise there, and without bounds beyond
 
 
 def bandpass_track(signals: SkipropeSignals, rows, settings) -> Track:
@@ -69,6 +70,13 @@ def bandpass_track(signals: SkipropeSignals, rows, settings) -> Track:
     notes = () if tuning.converged else ("retuning did not settle: the filter's phase at what was read stayed above 3 deg.",)
     if settings.yaw_measured and not body:
         notes += ('a measured yaw is used by the paper\'s rule only to correct the signals; rule "corrected" uses all of it.',)
+    steepest = float(np.abs(signals.geometry.elevation_rad).max())
+    if steepest > STEEPEST_RAD:
+        settled = np.inf
+        notes += (
+            f"the field stands up to {np.degrees(steepest):.0f} deg above the horizon: the rules divide by its cosine, and "
+            "none of their rows is trusted; use the harmonic method.",
+        )
     return Track(
         phasor,
         _covariance(phasor, amplitude_std, amplitude * phase_std),

@@ -27,6 +27,7 @@ FEWEST_SAMPLES = 60  # of a window: three times the unknowns
 SAMPLES_PER_PERIOD = 24  # of the fastest motion fitted; takes 0.3 % off its amplitude and nothing off the cone's
 ROUNDS = 3  # the second leaves errors of 2 deg in the known field times 3 deg of swing in the amplitude
 UNEVEN = "the phases of the windows do not advance evenly: from {:.4g} mHz the frequency ran to {:.4g} mHz, and was not followed."
+STEEP_RAD = np.radians(60.0)  # above which the field's azimuth says less and less
 NEAR_LINE = 0.25  # of a line's width: the spectrum's top is surely nearer than this to the frequency
 SURE_SENSE = 2.0  # standard deviations by which the two turning parts must differ
 
@@ -52,7 +53,8 @@ def harmonic_track(signals: SkipropeSignals, rows, settings) -> Track:
     spread = np.sqrt(np.trace(covariance, axis1=1, axis2=2) / 4.0)
     sense = np.where(np.abs(parts[:, 0] - parts[:, 1]) > SURE_SENSE * spread, np.sign(parts[:, 0] - parts[:, 1]), 0.0)
     near = np.exp(-0.5 * ((rows[:, None] - cone.middle_s) / max(memory, cone.window_s)) ** 2)
-    azimuth_off = near @ np.unwrap(cone.azimuth_off_rad) / near.sum(axis=1)
+    near = near * level_share(np.interp(cone.middle_s, thin.seconds, thin.geometry.elevation_rad))
+    azimuth_off = near @ cone.azimuth_off_rad / near.sum(axis=1)
     deviation = np.full(len(rows), frequency_deviation(cone))
     return Track(
         phasor,
@@ -65,6 +67,11 @@ def harmonic_track(signals: SkipropeSignals, rows, settings) -> Track:
         signals.seconds[0] + cone.window_s,
         notes,
     )
+
+
+def level_share(elevation_rad) -> np.ndarray:
+    """Weight of the field's azimuth at elevations: one below 60 deg, none where it is vertical and has no azimuth."""
+    return np.minimum((np.cos(elevation_rad) / np.cos(STEEP_RAD)) ** 2, 1.0) + 1e-9
 
 
 def _fitted(signals: SkipropeSignals, frequency_hz: float, others) -> HarmonicCone:

@@ -72,6 +72,7 @@ GATE = 36.0  # of the squared normalised innovation
 MOST_MISSED = 20  # passed over in turn: the next is used
 PIN_RAD2_S, LONGEST_PIN_S = 0.1, 10.0
 GIVEN, NOISE_SAMPLES = 10.0, 500.0  # samples that the given noise counts for, and that the noise is averaged over
+LEVEL = 0.25  # of the squared cosine of the field's elevation, 60 deg: its azimuth counts less where it is steeper
 OFF_MEMORY_S = 2000.0  # over which the azimuth's offset is averaged
 
 
@@ -218,8 +219,9 @@ def kalman_update(t, field_b, field_c, memory, params):
     moved = _take(x, p, work, h1, h2, r1, variance)
     _take(x, p, work, h2, h1, r2 - moved, variance)
     _pin(x, p, work, expected, PIN_RAD2_S / since)
-    memory[OFF] += _azimuth_ahead(x, known)
-    memory[OFF_WEIGHT] += 1.0
+    level = min((known[0] * known[0] + known[1] * known[1]) / (LEVEL * size_known * size_known), 1.0) + 1e-9
+    memory[OFF] += level * _azimuth_ahead(x, known)
+    memory[OFF_WEIGHT] += level
     memory[MISSED], memory[NIS] = 0.0, nis
     memory[COUNT] += 1.0
     return True
@@ -334,7 +336,7 @@ def _azimuth_ahead(x, known):
 @njit(cache=True)
 def azimuth_off(memory):
     """[rad] yaw plus azimuth error of the known field, averaged over the past."""
-    return memory[OFF] / max(memory[OFF_WEIGHT], 1.0)
+    return memory[OFF] / max(memory[OFF_WEIGHT], 1e-9)
 
 
 @njit(cache=True)
