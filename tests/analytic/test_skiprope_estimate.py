@@ -148,9 +148,9 @@ def test_a_filter_that_has_not_settled_says_so():
 @pytest.mark.parametrize("method", METHODS)
 def test_over_the_poles_the_fields_azimuth_is_not_leant_on(method):
     """A field that is vertical at moments has no azimuth then; the known one, two degrees off, points anywhere."""
-    flight = fly(duration_s=6000.0, rate_hz=1.0, field="IGRF-14", inclination_deg=86.0, bias_deg=(0.5, 0.5, 2.0))
+    flight = fly(duration_s=6000.0, rate_hz=1.0, field="IGRF-14", inclination_deg=98.0, bias_deg=(0.5, 0.5, 2.0))
     known = field_vector(flight.geometry)
-    turn = np.radians([1.5, -1.5, 1.0])
+    turn = np.radians([-2.0, -2.0, 0.0])
     off = known + np.cross(turn, known)
     assert np.degrees(np.abs(flight.geometry.elevation_rad)).max() > 80.0
     found = estimate_skiprope(skiprope_signals(flight.seconds, flight.measured_b, off), tether_length_m=LENGTH, method=method)
@@ -158,7 +158,7 @@ def test_over_the_poles_the_fields_azimuth_is_not_leant_on(method):
         assert not found.trusted.any() and any("above the horizon" in note for note in found.notes)
         return
     true = np.interp(found.seconds, flight.seconds, np.unwrap(true_cone(flight)[1])) + np.pi
-    assert np.sqrt(np.mean(apart(found.plane_rad, true)[found.trusted] ** 2)) < 6.0
+    assert np.sqrt(np.mean(apart(found.plane_rad, true)[found.trusted] ** 2)) < (1.2 if method == "harmonic" else 3.0)
 
 
 def test_no_skiprope_is_said():
