@@ -206,23 +206,26 @@ def enter(z, at, g, axes, out):
 
 
 @inner
-def leave(z, at, g, axes, out):
-    """X, W in z as r, v in out; equation (1)."""
+def leave(points, g, axes, out):
+    """X, W of points (6 n,) as r, v in out; equation (1). They are alike, so the compiler takes several at a time."""
     now, omega = axes.now[g], three(axes.origin[g], 6)
-    x = three(z, at)
-    matrix = turned(now)
-    store(out, at, add(three(now, 9), matvec(matrix, x)))
-    store(out, at + 3, add(three(now, 12), matvec(matrix, add(three(z, at + 3), cross(omega, x)))))
+    matrix, place, speed = turned(now), three(now, 9), three(now, 12)
+    for i in range(points.size // 6):
+        x, w = three(points, 6 * i), three(points, 6 * i + 3)
+        store(out, 6 * i, add(place, matvec(matrix, x)))
+        store(out, 6 * i + 3, add(speed, matvec(matrix, add(w, cross(omega, x)))))
 
 
 @inner
-def turn_rates(z, rate, at, g, axes, out):
-    """(X', W') of (2) into out, from X, W in z and (r', r'') in rate."""
+def turn_rates(points, rates, g, axes, out):
+    """(X', W') of (2) into out, from X, W of points (6 n,) and their (r', r'') in rates; several at a time."""
     now, omega = axes.now[g], three(axes.origin[g], 6)
-    x, w = three(z, at), three(z, at + 3)
-    pull = matvec(transpose(turned(now)), sub(three(rate, at + 3), three(now, 15)))
-    store(out, at, w)
-    store(out, at + 3, sub(pull, cross(omega, axpy(2.0, w, cross(omega, x)))))
+    back, bend = transpose(turned(now)), three(now, 15)
+    for i in range(points.size // 6):
+        x, w = three(points, 6 * i), three(points, 6 * i + 3)
+        pull = matvec(back, sub(three(rates, 6 * i + 3), bend))
+        store(out, 6 * i, w)
+        store(out, 6 * i + 3, sub(pull, cross(omega, axpy(2.0, w, cross(omega, x)))))
 
 
 @inner
@@ -243,10 +246,11 @@ def leave_all(z, base, lines, axes, out):
     for j in range(z.shape[0]):
         out[j] = z[j]
     for b in range(axes.group.shape[0]):
-        leave(z, TANGENT * b, axes.group[b], axes, out)
+        at = TANGENT * b
+        leave(z[at : at + 6], axes.group[b], axes, out[at : at + 6])
     for k in range(lines.nodes.shape[0]):
-        for i in range(lines.nodes[k]):
-            leave(z, base + 6 * (lines.first[k] + i), axes.group[lines.body[k, 0]], axes, out)
+        at, end = base + 6 * lines.first[k], base + 6 * (lines.first[k] + lines.nodes[k])
+        leave(z[at:end], axes.group[lines.body[k, 0]], axes, out[at:end])
 
 
 @inner
@@ -255,8 +259,8 @@ def turn_all_rates(z, rate, base, lines, axes, out):
     for j in range(z.shape[0]):
         out[j] = rate[j]
     for b in range(axes.group.shape[0]):
-        turn_rates(z, rate, TANGENT * b, axes.group[b], axes, out)
+        at = TANGENT * b
+        turn_rates(z[at : at + 6], rate[at : at + 6], axes.group[b], axes, out[at : at + 6])
     for k in range(lines.nodes.shape[0]):
-        for i in range(lines.nodes[k]):
-            at = base + 6 * (lines.first[k] + i)
-            turn_rates(z, rate, at, axes.group[lines.body[k, 0]], axes, out)
+        at, end = base + 6 * lines.first[k], base + 6 * (lines.first[k] + lines.nodes[k])
+        turn_rates(z[at:end], rate[at:end], axes.group[lines.body[k, 0]], axes, out[at:end])

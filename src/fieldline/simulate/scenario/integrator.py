@@ -40,7 +40,7 @@ class Integrator(Record):
         default=1e-6, gt=0.0, description="error of a step in velocity; rosenbrock also allows position_tolerance_m a step [m/s]"
     )
     angle_tolerance_rad: float | None = Field(
-        default=None, gt=0.0, description="error of a step in attitude [rad]; by default 1e-9 for dop853, 1e-6 for rosenbrock"
+        default=None, gt=0.0, description="error of a step in attitude [rad]; by default 1e-9 for dop853, 1e-8 for rosenbrock"
     )
     rate_tolerance_rad_s: float = Field(
         default=1e-10, gt=0.0, description="error of a step in angular rate; rosenbrock also allows the angle's a step [rad/s]"
@@ -70,4 +70,4 @@ class Integrator(Record):
     @property
     def angle_allowed_rad(self) -> float:
         """Error of a step in attitude [rad]."""
-        return self.angle_tolerance_rad or (1e-6 if self.method == "rosenbrock" else 1e-9)
+        return self.angle_tolerance_rad or (1e-8 if self.method == "rosenbrock" else 1e-9)
