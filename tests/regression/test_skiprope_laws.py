@@ -12,7 +12,7 @@ from fieldline.simulate.scenario.outside import known_laws
 from fieldline.simulate.scenario.templates import template
 from fieldline.simulate.skiprope_laws import HEARING_LAWS
 
-pytestmark = [pytest.mark.kernels, pytest.mark.flight]
+pytestmark = pytest.mark.flight  # an hour on a flexible line each: minutes in plain Python, and no kernel of their own
 YAW = '[[software]]\nbody = "ship"\nlaw = "skiprope-yaw"'
 CURRENT = """circuit = { mode = "profile", commanded = true, current_max_a = 1.0 }
 [[software]]
