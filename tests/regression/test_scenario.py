@@ -290,6 +290,16 @@ def test_a_step_that_is_rather_coarse_is_a_warning():
     assert scenario(**{"body.0.rate_deg_s": [100.0, 0.0, 0.0], "integrator.step_s": 0.057}).check() == []
 
 
+def test_two_tasks_that_command_the_same_actuators_are_warned_of():
+    text = template("detumble", "cubesat")
+    block = text[text.index("[[software]]") :]
+    block = block[: block.index("\n[", 1)] if "\n[" in block[1:] else block
+    name = Scenario.from_toml(text).body[0].name
+    again = block.replace("[[software]]", '[[software]]\nname = "again"')
+    (warning,) = Scenario.from_toml(text + "\n" + again).check()
+    assert warning == f'software[0] and software[1] all command "dipole" of "{name}": who was called last is obeyed.'
+
+
 def test_readings_shorten_the_step():
     fast = {"body.0.rate_deg_s": [500.0, 0.0, 0.0], "body.0.magnetometer.rate_hz": 100.0}
     assert scenario(**fast).check() == []  # steps end at each reading

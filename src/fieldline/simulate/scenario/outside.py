@@ -228,9 +228,22 @@ def _laws(scenario) -> Iterator[tuple[str, str]]:
         yield from actuators_missing(f"software[{k}].law", needed, scenario, body)
 
 
+def _rivals(scenario) -> Iterator[str]:
+    """Tasks that command the same actuators: each call's command stands until the next one's."""
+    laws, found = known_laws(), {}
+    for k, task in enumerate(scenario.software):
+        for command in task.commands if task.is_users else laws[task.law].commands:
+            found.setdefault((scenario.index_of(task.body), command), []).append(k)
+    for (b, command), tasks in found.items():
+        if len(tasks) > 1:
+            named = " and ".join(f"software[{k}]" for k in tasks)
+            yield f'{named} all command "{command}" of "{scenario.body[b].name}": who was called last is obeyed.'
+
+
 def _warnings(scenario) -> Iterator[str]:
     """What runs, but perhaps not as meant."""
     yield from _waves(scenario)
+    yield from _rivals(scenario)
     for k, body in enumerate(scenario.body):
         coarse = rather_coarse(scenario, body)
         if coarse:
